@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace semantic_mht_slam {
+
+/// One row of a CSV file. Cells are addressed by their place in the `columns` list that the reader was given.
+/// Every getter throws InputError naming file, line and column if the cell is missing or not of its kind.
+class CsvRow {
+ public:
+  CsvRow(const std::string& path, const std::vector<std::string>& columns) : path_(path), columns_(columns) {}
+
+  bool has(std::size_t column) const { return !cells_[column].empty(); }
+  std::string_view text(std::size_t column) const;
+  double number(std::size_t column) const;  ///< finite
+  std::int64_t integer(std::size_t column) const;
+  std::optional<double> optionalNumber(std::size_t column) const;
+
+  /// Throws InputError "file:line: column 'name': problem".
+  [[noreturn]] void fail(std::size_t column, const std::string& problem) const;
+
+ private:
+  friend class CsvReader;
+
+  const std::string& path_;
+  const std::vector<std::string>& columns_;
+  int line_ = 0;
+  std::vector<std::string_view> cells_;
+};
+
+/// Reads CSV files whose first line names the columns, in any order. Cells hold no quotes or commas.
+class CsvReader {
+ public:
+  /// Columns are numbered as in `required`, then as in `optional`.
+  CsvReader(std::vector<std::string> required, std::vector<std::string> optional = {});
+
+  /// Calls `use` for each row. Throws InputError for a missing file, a missing, repeated or unknown column and a row
+  /// with another number of cells than the header.
+  void read(const std::string& path, const std::function<void(const CsvRow&)>& use) const;
+
+ private:
+  std::vector<std::size_t> readHeader(const std::string& where, std::string_view line) const;
+
+  std::vector<std::string> columns_;
+  std::size_t required_count_;
+};
+
+}  // namespace semantic_mht_slam

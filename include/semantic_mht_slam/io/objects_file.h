@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/models/detection.h"
+
+namespace semantic_mht_slam {
+
+/// Reads an objects CSV: columns frame,class,x,y,z and optionally score, the covariance sxx,sxy,sxz,syy,syz,szz (all
+/// six or none) and the extents size_x,size_y,size_z (all three or none); metres in the base frame; empty cells are
+/// unknown. Returns `frames` lists; within a frame the order of the file. Throws InputError naming file, line and
+/// column for a number that is not finite, a class that the table lacks and a frame outside [0, frames).
+std::vector<Detections> readObjects(const std::string& path, const ClassTable& classes, std::size_t frames);
+
+/// Writes an objects CSV with three decimals of a metre; optional columns appear if any detection has them.
+std::string formatObjects(const std::vector<Detections>& detections, const ClassTable& classes);
+
+}  // namespace semantic_mht_slam

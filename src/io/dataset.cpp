@@ -1,0 +1,72 @@
+#include "semantic_mht_slam/io/dataset.h"
+
+#include <filesystem>
+
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/calibration_file.h"
+#include "semantic_mht_slam/io/objects_file.h"
+#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/trajectory_file.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `name` inside the folder if it is there, else `name` as it stands.
+std::string locate(const std::string& folder, const std::string& name) {
+  const std::string inside = (fs::path(folder) / name).string();
+  return fs::path(name).is_absolute() || (!fs::exists(inside) && fs::exists(name)) ? name : inside;
+}
+
+std::vector<Pose> readPoses(const std::string& path, const Pose& T_cam0_base, std::size_t frames) {
+  std::vector<Pose> poses = readKittiTrajectory(path);
+  if (poses.size() != frames) {
+    throw InputError(path + ": " + std::to_string(poses.size()) + " poses, times.txt has " + std::to_string(frames) +
+                     " rows");
+  }
+  for (Pose& pose : poses) pose = toBase(pose, T_cam0_base);
+  return poses;
+}
+
+std::string formatPoses(std::vector<Pose> poses, const Pose& T_cam0_base) {
+  for (Pose& pose : poses) pose = toCamera(pose, T_cam0_base);
+  return formatKittiTrajectory(poses);
+}
+
+}  // namespace
+
+Pose toBase(const Pose& T_world_cam0, const Pose& T_cam0_base) {
+  return T_cam0_base.inverse() * T_world_cam0 * T_cam0_base;
+}
+
+Pose toCamera(const Pose& T_world_base, const Pose& T_cam0_base) {
+  return T_cam0_base * T_world_base * T_cam0_base.inverse();
+}
+
+Dataset readDataset(const DatasetFiles& files, const ClassTable& classes) {
+  if (!fs::is_directory(files.folder)) throw InputError("no data-set folder '" + files.folder + "'");
+  Dataset dataset;
+  dataset.stamps = readTimes(locate(files.folder, "times.txt"));
+  dataset.T_cam0_base = readCalibration(locate(files.folder, "calib.txt"));
+  dataset.T_odom_base = readPoses(locate(files.folder, files.odometry), dataset.T_cam0_base, dataset.frames());
+  dataset.detections = readObjects(locate(files.folder, files.objects), classes, dataset.frames());
+  const std::string truth = (fs::path(files.folder) / "poses.txt").string();
+  if (fs::exists(truth)) dataset.T_map_base = readPoses(truth, dataset.T_cam0_base, dataset.frames());
+  return dataset;
+}
+
+void writeDataset(const Dataset& dataset, const ClassTable& classes, const std::string& folder) {
+  const fs::path root(folder);
+  prepareOutputFolder((root / "odometry").string());
+  writeFileAtomically((root / "times.txt").string(), formatTimes(dataset.stamps));
+  writeFileAtomically((root / "calib.txt").string(), formatCalibration(dataset.T_cam0_base));
+  writeFileAtomically((root / "odometry" / "odometry.txt").string(),
+                      formatPoses(dataset.T_odom_base, dataset.T_cam0_base));
+  writeFileAtomically((root / "objects.csv").string(), formatObjects(dataset.detections, classes));
+  if (dataset.T_map_base) {
+    writeFileAtomically((root / "poses.txt").string(), formatPoses(*dataset.T_map_base, dataset.T_cam0_base));
+  }
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,82 @@
+#include "semantic_mht_slam/io/yaml_file.h"
+
+#include <set>
+
+#include <yaml-cpp/yaml.h>
+
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/text_file.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+std::string origin(const std::string& path, const YAML::Node& node) {
+  return at(path, node.Mark().line + 1);
+}
+
+YAML::Node load(const std::string& path) {
+  const std::string content = readFile(path);
+  try {
+    return YAML::Load(content);
+  } catch (const YAML::Exception& error) {
+    throw InputError(at(path, error.mark.line + 1) + ": not YAML: " + error.msg);
+  }
+}
+
+void flatten(const std::string& path, const YAML::Node& node, const std::string& prefix,
+             std::vector<Setting>& settings) {
+  if (!node.IsMap()) throw InputError(origin(path, node) + ": '" + prefix + "' should hold keys and values");
+  for (const auto& item : node) {
+    const std::string key = (prefix.empty() ? "" : prefix + ".") + item.first.as<std::string>();
+    if (item.second.IsMap()) {
+      flatten(path, item.second, key, settings);
+    } else if (item.second.IsScalar()) {
+      settings.push_back({key, item.second.Scalar(), origin(path, item.second)});
+    } else {
+      throw InputError(origin(path, item.first) + ": '" + key + "' has no single value");
+    }
+  }
+}
+
+std::vector<Setting> flattenedOnce(const std::string& path, const YAML::Node& node) {
+  std::vector<Setting> settings;
+  if (node.IsNull()) return settings;  // an empty file changes nothing
+  flatten(path, node, "", settings);
+  std::set<std::string> seen;
+  std::vector<std::string> problems;
+  for (const Setting& setting : settings) {
+    if (!seen.insert(setting.key).second) problems.push_back(setting.origin + ": '" + setting.key + "' stands twice");
+  }
+  if (!problems.empty()) throw ConfigError(problems);
+  return settings;
+}
+
+}  // namespace
+
+std::vector<Setting> readSettings(const std::string& path) {
+  return flattenedOnce(path, load(path));
+}
+
+ClassTable readClassTable(const std::string& path) {
+  const YAML::Node root = load(path);
+  if (!root.IsMap() || root.size() != 1 || !root["classes"] || !root["classes"].IsSequence()) {
+    throw InputError(path + ": a class table holds the one key 'classes' with a list");
+  }
+  std::vector<ClassInfo> classes;
+  std::vector<std::string> problems;
+  for (const YAML::Node& node : root["classes"]) {
+    ClassInfo info;
+    Fields fields;
+    describe(info, fields);
+    try {
+      applySettings(flattenedOnce(path, node), fields);
+    } catch (const ConfigError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+    classes.push_back(info);
+  }
+  if (!problems.empty()) throw ConfigError(problems);
+  return ClassTable(std::move(classes), path);
+}
+
+}  // namespace semantic_mht_slam
