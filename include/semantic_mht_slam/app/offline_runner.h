@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "semantic_mht_slam/app/recording.h"
+#include "semantic_mht_slam/slam/slam.h"
+
+namespace semantic_mht_slam {
+
+/// What a run over a recording gave.
+struct RunResult {
+  std::vector<StampedPose> trajectory;  ///< T_map_base at every odometry sample that was used
+  InputCounters counters;
+  std::vector<double> step_ms;  ///< wall time of each step: an odometry sample and the detections up to its stamp
+  double seconds = 0.0;         ///< wall time of the run, without reading and writing files
+};
+
+/// Called now and then with the number of odometry samples done and of all.
+using ProgressCallback = std::function<void(std::size_t, std::size_t)>;
+
+/// Feeds a recording to the estimator in the order of stamps, as fast as it goes.
+/// Throws InputError if nothing of the odometry could be used.
+RunResult runOffline(const Recording& recording, const SlamConfig& config, const ProgressCallback& progress);
+
+}  // namespace semantic_mht_slam

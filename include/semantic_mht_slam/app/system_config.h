@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/slam/slam.h"
+
+namespace semantic_mht_slam {
+
+/// What only the ROS node uses.
+struct NodeConfig {
+  std::string map_frame = "map";
+  std::string odom_frame = "odom";
+  std::string base_frame = "base_link";
+  int queue_size = 2000;
+  double tf_timeout_s = 2.0;
+  double trajectory_period_s = 0.5;
+  double reset_after_jump_back_s = 1.0;
+};
+
+void describe(NodeConfig& config, Fields& fields);
+
+/// Every parameter of the system: one description for the YAML file, the ROS parameters and `--set`.
+struct SystemConfig {
+  std::uint64_t seed = 1;
+  std::string class_table = "classes_semantic_kitti.yaml";
+  SlamConfig slam;
+  NodeConfig node;
+};
+
+void describe(SystemConfig& config, Fields& fields);
+
+/// Defaults, changed by a YAML file and then by further settings. Throws InputError or ConfigError.
+SystemConfig loadSystemConfig(const std::string& yaml_path, const std::vector<Setting>& overrides);
+
+/// Defaults changed by settings alone. Throws ConfigError.
+SystemConfig makeSystemConfig(const std::vector<Setting>& settings);
+
+/// The effective configuration as YAML.
+std::string toYaml(SystemConfig config);
+
+/// docs/parameters.md: every parameter of the system, of a class table's entries and of a scenario.
+std::string parameterReference();
+
+/// "key=value" of a command line. Throws InputError without '='.
+Setting parseOverride(const std::string& text);
+
+/// Reads `config.class_table`; a relative path is looked up in `folder` (that of the YAML file), then in the package's
+/// own configuration folder.
+ClassTable loadClassTable(const SystemConfig& config, const std::string& folder);
+
+/// A file of the package's configuration folder: beside an installed program, else in the source tree.
+std::string packageConfigFile(const std::string& name);
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "semantic_mht_slam/app/recording.h"
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/models/class_table.h"
+
+namespace semantic_mht_slam {
+
+/// Topics and frames of a recorded bag.
+struct BagLayout {
+  std::string objects_topic = "/objects";            ///< semantic_mht_slam/SemanticObjectArray
+  std::string odometry_topic = "/odometry";          ///< nav_msgs/Odometry
+  std::string ground_truth_topic = "/ground_truth";  ///< nav_msgs/Path, latched, T_map_base
+  std::string time_origin_topic = "/time_origin";    ///< std_msgs/Time: the bag's time of stamp 0 of the data set
+  std::string sensor_frame = "velodyne";
+  std::string camera_frame = "cam0";
+};
+
+/// Writes a recording as a bag: objects, odometry, tf and tf_static, ground truth if known. An empty frame is written
+/// as an empty array. ROS time cannot be 0, so every stamp is shifted by `time_origin`, which is stored in the bag. The
+/// file appears under its name when it is complete. Throws InputError.
+void writeBag(const std::string& path, const Recording& recording, const ClassTable& classes, const NodeConfig& frames,
+              const BagLayout& layout, Stamp time_origin);
+
+/// Reads a bag as a recording; stamps are shifted back by the stored time origin, if any. Objects in another frame than
+/// the base frame are transformed by the static transforms of the bag.
+/// Throws InputError for a missing, truncated or foreign file, missing topics, wrong message types, frames that are not
+/// connected, odometry in other frames than configured and class ids that the table lacks.
+Recording readBag(const std::string& path, const ClassTable& classes, const NodeConfig& frames,
+                  const BagLayout& layout);
+
+/// Writes the map file of a run without landmarks: class table and trajectory. Returns its size in bytes.
+std::size_t writeMapFile(const std::string& path, const std::vector<StampedPose>& T_map_base, const ClassTable& classes,
+                         const NodeConfig& frames);
+
+}  // namespace semantic_mht_slam

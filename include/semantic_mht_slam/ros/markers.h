@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include <visualization_msgs/MarkerArray.h>
+
+#include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/slam/frame.h"
+
+namespace semantic_mht_slam {
+
+/// The objects of a frame as boxes in class colours, in the map frame: their extents where they are known, else a size
+/// by class. One marker namespace a class; the first marker clears what was shown before.
+visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& T_map_odom, const ClassTable& classes,
+                                                const std::string& map_frame);
+
+}  // namespace semantic_mht_slam

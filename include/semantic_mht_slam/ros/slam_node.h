@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <ros/ros.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/ros/input_queue.h"
+#include "semantic_mht_slam/slam/slam.h"
+
+namespace semantic_mht_slam {
+
+/// The ROS node. Subscribers put messages into a bounded queue; one worker thread owns the estimator, takes them out,
+/// and publishes tf map -> odom, `pose` and `markers/objects`; a wall timer publishes `trajectory` (latched) when it
+/// has changed, so that the last one goes out even if the clock of a replay has stopped.
+class SlamNode {
+ public:
+  SlamNode(const ros::NodeHandle& handle, const SystemConfig& config, const ClassTable& classes);
+
+  /// Stops the worker; messages that still wait are given up.
+  ~SlamNode();
+
+  SlamNode(const SlamNode&) = delete;
+  SlamNode& operator=(const SlamNode&) = delete;
+
+ private:
+  void work();
+  void handle(const nav_msgs::Odometry& message);
+  void handle(const SemanticObjectArray& message);
+  bool isExpectedFrame(const nav_msgs::Odometry& message) const;
+  void startAgainAfterJumpBack(Stamp stamp);
+  void publishPose();
+  void publishObjects();
+  void publishTrajectory(const ros::WallTimerEvent& event);
+  void reportProblems();
+  std::optional<Pose> findSensor(const std::string& sensor_frame);
+
+  ros::NodeHandle handle_;
+  const SystemConfig config_;
+  const ClassTable classes_;
+  tf2_ros::Buffer transforms_;
+  tf2_ros::TransformListener transform_listener_;
+  tf2_ros::TransformBroadcaster transform_broadcaster_;
+  ros::Publisher pose_publisher_;
+  ros::Publisher trajectory_publisher_;
+  ros::Publisher objects_publisher_;
+
+  // Owned by the worker, but for the trajectory that the timer publishes.
+  std::unique_ptr<Slam> slam_;
+  std::map<std::string, std::optional<Pose>> T_base_sensor_;
+  std::size_t unknown_classes_ = 0;
+  std::mutex slam_mutex_;
+  std::size_t published_odometry_ = 0;
+  std::optional<Stamp> published_frame_;
+
+  InputQueue queue_;
+  ros::Subscriber odometry_subscriber_;
+  ros::Subscriber objects_subscriber_;
+  ros::WallTimer trajectory_timer_;
+  std::thread worker_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/slam/frame.h"
+
+namespace semantic_mht_slam {
+
+/// How detections find their odometry.
+struct FrameAssemblerConfig {
+  double max_odometry_gap_s = 1.0;
+  double odometry_history_s = 10.0;
+  int max_waiting_frames = 1000;
+};
+
+void describe(FrameAssemblerConfig& config, Fields& fields);
+
+/// What came in and what was dropped, since the beginning.
+struct InputCounters {
+  std::size_t odometry = 0;                 ///< odometry samples used
+  std::size_t odometry_invalid = 0;         ///< dropped: not finite, or the quaternion has no unit norm
+  std::size_t odometry_not_rising = 0;      ///< dropped: stamp not after the one before
+  std::size_t frames = 0;                   ///< detector frames used
+  std::size_t frames_before_odometry = 0;   ///< dropped: older than the odometry that is still known
+  std::size_t frames_not_rising = 0;        ///< dropped: stamp not after the frame before
+  std::size_t frames_in_odometry_gap = 0;   ///< dropped: odometry around the stamp is too far apart
+  std::size_t frames_waiting_too_long = 0;  ///< dropped: too many frames wait for odometry
+  std::size_t detections = 0;               ///< detections in the frames used
+  std::size_t detections_invalid = 0;       ///< dropped: position, covariance or score cannot be used
+};
+
+/// Joins odometry and detections by their stamps: a frame gets the odometry pose interpolated to its stamp, as soon as
+/// odometry at or after that stamp is there. The result depends on stamps alone, not on the order in which the two
+/// kinds of input arrive, as long as each kind arrives in its own order.
+class FrameAssembler {
+ public:
+  explicit FrameAssembler(const FrameAssemblerConfig& config);
+
+  /// Returns true if the sample is used.
+  bool addOdometry(const StampedPose& T_odom_base);
+
+  /// Unusable detections are dropped one by one; the frame stays, empty if need be.
+  void addDetections(Stamp stamp, Detections detections);
+
+  /// The next frame in the order of stamps whose odometry is known; empty if there is none yet.
+  std::optional<Frame> next();
+
+  const InputCounters& counters() const { return counters_; }
+
+ private:
+  struct WaitingFrame {
+    std::size_t index;
+    Stamp stamp;
+    Detections detections;
+  };
+
+  std::optional<Pose> interpolatedOdometry(Stamp stamp);
+  void forgetOldOdometry();
+
+  FrameAssemblerConfig config_;
+  std::deque<StampedPose> odometry_;
+  std::deque<WaitingFrame> waiting_;
+  std::size_t next_index_ = 0;
+  std::optional<Stamp> last_frame_;
+  InputCounters counters_;
+};
+
+}  // namespace semantic_mht_slam

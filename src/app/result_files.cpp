@@ -1,0 +1,117 @@
+#include "semantic_mht_slam/app/result_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/trajectory_file.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Pose inOutputFrame(const Recording& recording, const Pose& T_map_base) {
+  return recording.T_base_cam0 ? toCamera(T_map_base, recording.T_base_cam0->inverse()) : T_map_base;
+}
+
+/// Element of a sorted list below which the fraction `quantile` of it lies (nearest rank).
+double quantileOf(const std::vector<double>& sorted, double quantile) {
+  const double rank = std::ceil(quantile * static_cast<double>(sorted.size()));
+  return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+Json summarizeTimes(std::vector<double> step_ms) {
+  std::sort(step_ms.begin(), step_ms.end());
+  const double sum = std::accumulate(step_ms.begin(), step_ms.end(), 0.0);
+  return {{"mean", sum / static_cast<double>(step_ms.size())},
+          {"p50", quantileOf(step_ms, 0.5)},
+          {"p95", quantileOf(step_ms, 0.95)},
+          {"p99", quantileOf(step_ms, 0.99)},
+          {"max", step_ms.back()}};
+}
+
+double peakRssMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+Json toJson(const TrajectoryError& error) {
+  return {{"first_m", error.first_m},
+          {"se3_m", error.se3_m},
+          {"running_mean_m", error.running_mean_m},
+          {"running_std_m", error.running_std_m},
+          {"t_rel_percent", error.t_rel_percent},
+          {"r_rel_deg_per_100m", error.r_rel_deg_per_100m},
+          {"revisit_m", error.revisit_m},
+          {"end_m", error.end_m}};
+}
+
+Json toJson(const InputCounters& counters) {
+  return {{"odometry", counters.odometry},
+          {"odometry_invalid", counters.odometry_invalid},
+          {"odometry_not_rising", counters.odometry_not_rising},
+          {"frames", counters.frames},
+          {"frames_before_odometry", counters.frames_before_odometry},
+          {"frames_not_rising", counters.frames_not_rising},
+          {"frames_in_odometry_gap", counters.frames_in_odometry_gap},
+          {"frames_waiting_too_long", counters.frames_waiting_too_long},
+          {"detections", counters.detections},
+          {"detections_invalid", counters.detections_invalid}};
+}
+
+}  // namespace
+
+std::optional<TrajectoryError> scoreRun(const Recording& recording, const std::vector<StampedPose>& trajectory) {
+  std::map<Stamp, const Pose*> truth_at;
+  for (const StampedPose& pose : recording.ground_truth) truth_at[pose.stamp] = &pose.T_world_base;
+  std::vector<Pose> truth;
+  std::vector<Pose> estimate;
+  for (const auto& [stamp, T_map_base] : trajectory) {
+    const auto found = truth_at.find(stamp);
+    if (found == truth_at.end()) continue;
+    truth.push_back(inOutputFrame(recording, *found->second));
+    estimate.push_back(inOutputFrame(recording, T_map_base));
+  }
+  if (truth.empty()) return std::nullopt;
+  return trajectoryError(truth, estimate);
+}
+
+void writeResultFiles(const std::string& folder, const Recording& recording, const RunResult& result,
+                      const SystemConfig& config) {
+  std::vector<Pose> poses;
+  for (const StampedPose& pose : result.trajectory) poses.push_back(inOutputFrame(recording, pose.T_world_base));
+  writeFileAtomically(folder + "/trajectory.txt", formatKittiTrajectory(poses));
+  writeFileAtomically(folder + "/trajectory.tum", formatTumTrajectory(result.trajectory));
+  writeFileAtomically(folder + "/loop_closures.csv",
+                      "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw\n");
+  writeFileAtomically(folder + "/landmarks.csv", "id,class,x,y,z,existence,observations\n");
+  writeFileAtomically(folder + "/associations.csv", "frame,row,landmark\n");
+  writeFileAtomically(folder + "/config.yaml", toYaml(config));
+}
+
+void writeReport(const std::string& folder, const Recording& recording, const RunResult& result,
+                 const SystemConfig& config, std::size_t map_bytes) {
+  Json report = {{"method", "odometry"},
+                 {"seed", config.seed},
+                 {"frames", result.trajectory.size()},
+                 {"seconds", result.seconds},
+                 {"ms_per_frame", summarizeTimes(result.step_ms)},
+                 {"peak_rss_mb", peakRssMb()},
+                 {"hypotheses", {{"mean", 0}, {"max", 0}}},
+                 {"landmarks", 0},
+                 {"submaps", 0},
+                 {"loop_closures", 0},
+                 {"map_bytes", map_bytes},
+                 {"input", toJson(result.counters)}};
+  if (const auto error = scoreRun(recording, result.trajectory)) report["error"] = toJson(*error);
+  writeFileAtomically(folder + "/report.json", report.dump(2) + "\n");
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,96 @@
+#include "semantic_mht_slam/app/system_config.h"
+
+#include <filesystem>
+
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/yaml_file.h"
+#include "semantic_mht_slam/simulation/scenario.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+void describe(NodeConfig& config, Fields& fields) {
+  fields.add("map_frame", config.map_frame, "Name of the map frame.");
+  fields.add("odom_frame", config.odom_frame, "Name of the odometry's frame; odometry in another frame is refused.");
+  fields.add("base_frame", config.base_frame, "Name of the robot's base frame, the child frame of the odometry.");
+  fields.add("queue_size", config.queue_size, "messages", {1, 1000000},
+             "Messages that may wait for the estimator; beyond that the oldest is dropped and counted.");
+  fields.add("tf_timeout", config.tf_timeout_s, "s", {0.0, 60.0},
+             "How long the first frame of a sensor waits for the transform from the base frame.");
+  fields.add("trajectory_period", config.trajectory_period_s, "s", {0.01, 60.0},
+             "Wall time between publications of the trajectory.");
+  fields.add("reset_after_jump_back", config.reset_after_jump_back_s, "s", {0.0, 3600.0},
+             "Odometry whose stamp falls back by more than this starts a new map.");
+}
+
+void describe(SystemConfig& config, Fields& fields) {
+  fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
+  fields.add("class_table", config.class_table, "Class table file; relative to this file or to the package's config.");
+  describe(config.slam, fields);
+  fields.group("node", config.node);
+}
+
+SystemConfig makeSystemConfig(const std::vector<Setting>& settings) {
+  SystemConfig config;
+  Fields fields;
+  describe(config, fields);
+  applySettings(settings, fields);
+  return config;
+}
+
+SystemConfig loadSystemConfig(const std::string& yaml_path, const std::vector<Setting>& overrides) {
+  std::vector<Setting> settings = readSettings(yaml_path);
+  settings.insert(settings.end(), overrides.begin(), overrides.end());
+  return makeSystemConfig(settings);
+}
+
+std::string toYaml(SystemConfig config) {
+  Fields fields;
+  describe(config, fields);
+  return toYaml(fields);
+}
+
+std::string parameterReference() {
+  SystemConfig config;
+  Fields system;
+  describe(config, system);
+  ClassInfo info;
+  Fields class_entry;
+  describe(info, class_entry);
+  Scenario scenario;
+  Fields scenario_fields;
+  describe(scenario, scenario_fields);
+  return "<!-- made by the program parameter_reference; do not edit -->\n# Parameters\n\n"
+         "Keys of `config/kitti.yaml`, of `slam_offline --set KEY=VALUE` and, as private parameters with `/` in place "
+         "of "
+         "`.`,\nof `slam_node`.\n" +
+         toMarkdown(system) + "\n# Class tables\n\nKeys of one entry of the list `classes`.\n" +
+         toMarkdown(class_entry) + "\n# Scenarios\n\nKeys of the scenario files of `simulate_drive`.\n" +
+         toMarkdown(scenario_fields);
+}
+
+Setting parseOverride(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throw InputError("--set " + text + ": key=value was expected");
+  return {text.substr(0, equals), text.substr(equals + 1), "--set"};
+}
+
+ClassTable loadClassTable(const SystemConfig& config, const std::string& folder) {
+  const fs::path beside = fs::path(folder) / config.class_table;
+  return readClassTable(fs::exists(beside) ? beside.string() : packageConfigFile(config.class_table));
+}
+
+std::string packageConfigFile(const std::string& name) {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path prefix = program.parent_path().parent_path().parent_path();  // PREFIX/lib/semantic_mht_slam/program
+  const fs::path installed = prefix / "share" / "semantic_mht_slam" / "config" / name;
+  if (!error && fs::exists(installed)) return installed.string();
+  return (fs::path(SEMANTIC_MHT_SLAM_SOURCE_CONFIG_DIR) / name).string();
+}
+
+}  // namespace semantic_mht_slam

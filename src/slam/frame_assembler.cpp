@@ -1,0 +1,101 @@
+#include "semantic_mht_slam/slam/frame_assembler.h"
+
+#include <algorithm>
+
+#include "semantic_mht_slam/common/gaussian.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+bool isUsable(const Detection& detection) {
+  if (!detection.position_m.allFinite()) return false;
+  if (detection.score && !(*detection.score >= 0.0 && *detection.score <= 1.0)) return false;
+  if (detection.size_m && !(detection.size_m->allFinite() && (detection.size_m->array() >= 0.0).all())) return false;
+  return !detection.cov_m2 || isCovariance(*detection.cov_m2);
+}
+
+}  // namespace
+
+void describe(FrameAssemblerConfig& config, Fields& fields) {
+  fields.add("max_odometry_gap", config.max_odometry_gap_s, "s", {1e-3, 60.0},
+             "Detections between odometry samples further apart than this are dropped.");
+  fields.add("odometry_history", config.odometry_history_s, "s", {0.1, 600.0},
+             "How long odometry is kept for detections that come late.");
+  fields.add("max_waiting_frames", config.max_waiting_frames, "", {1, 1000000},
+             "Detector frames that may wait for odometry; beyond that the oldest is dropped.");
+}
+
+FrameAssembler::FrameAssembler(const FrameAssemblerConfig& config) : config_(config) {}
+
+bool FrameAssembler::addOdometry(const StampedPose& T_odom_base) {
+  if (!T_odom_base.T_world_base.isValid()) {
+    ++counters_.odometry_invalid;
+    return false;
+  }
+  if (!odometry_.empty() && T_odom_base.stamp <= odometry_.back().stamp) {
+    ++counters_.odometry_not_rising;
+    return false;
+  }
+  odometry_.push_back(T_odom_base);
+  ++counters_.odometry;
+  forgetOldOdometry();
+  return true;
+}
+
+void FrameAssembler::forgetOldOdometry() {
+  // Frames that wait already need their odometry however old it is.
+  Stamp oldest_needed = odometry_.back().stamp - stampFromSeconds(config_.odometry_history_s);
+  if (!waiting_.empty()) oldest_needed = std::min(oldest_needed, waiting_.front().stamp);
+  while (odometry_.size() > 2 && odometry_[1].stamp <= oldest_needed) odometry_.pop_front();
+}
+
+void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
+  const std::size_t index = next_index_++;
+  if (last_frame_ && stamp <= *last_frame_) {
+    ++counters_.frames_not_rising;
+    return;
+  }
+  last_frame_ = stamp;
+  const auto unusable =
+      std::remove_if(detections.begin(), detections.end(), [](const Detection& d) { return !isUsable(d); });
+  counters_.detections_invalid += static_cast<std::size_t>(detections.end() - unusable);
+  detections.erase(unusable, detections.end());
+  waiting_.push_back({index, stamp, std::move(detections)});
+  if (static_cast<int>(waiting_.size()) > config_.max_waiting_frames) {
+    waiting_.pop_front();
+    ++counters_.frames_waiting_too_long;
+  }
+}
+
+std::optional<Frame> FrameAssembler::next() {
+  while (!waiting_.empty() && !odometry_.empty() && waiting_.front().stamp <= odometry_.back().stamp) {
+    WaitingFrame waiting = std::move(waiting_.front());
+    waiting_.pop_front();
+    if (const auto T_odom_base = interpolatedOdometry(waiting.stamp)) {
+      ++counters_.frames;
+      counters_.detections += waiting.detections.size();
+      return Frame{waiting.index, waiting.stamp, *T_odom_base, std::move(waiting.detections)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose> FrameAssembler::interpolatedOdometry(Stamp stamp) {
+  const auto after = std::lower_bound(odometry_.begin(), odometry_.end(), stamp,
+                                      [](const StampedPose& pose, Stamp s) { return pose.stamp < s; });
+  if (after->stamp == stamp) return after->T_world_base;
+  if (after == odometry_.begin()) {
+    ++counters_.frames_before_odometry;
+    return std::nullopt;
+  }
+  const auto before = after - 1;
+  const Stamp gap = after->stamp - before->stamp;
+  if (gap > stampFromSeconds(config_.max_odometry_gap_s)) {
+    ++counters_.frames_in_odometry_gap;
+    return std::nullopt;
+  }
+  const double fraction = static_cast<double>(stamp - before->stamp) / static_cast<double>(gap);
+  return interpolate(before->T_world_base, after->T_world_base, fraction);
+}
+
+}  // namespace semantic_mht_slam

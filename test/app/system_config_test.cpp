@@ -1,0 +1,59 @@
+#include "semantic_mht_slam/app/system_config.h"
+
+#include <filesystem>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/yaml_file.h"
+
+#include "support/expect_input_error.h"
+#include "support/temporary_folder.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+TEST(SystemConfigTest, ShippedConfigurationLoadsAndItsClassTableIsFound) {
+  const SystemConfig config = loadSystemConfig(packageConfigFile("kitti.yaml"), {});
+  EXPECT_GT(
+      loadClassTable(config, std::filesystem::path(packageConfigFile("kitti.yaml")).parent_path().string()).size(), 0);
+}
+
+TEST(SystemConfigTest, EffectiveConfigurationReadsBackAsItself) {
+  SystemConfig config;
+  config.seed = 42;
+  config.slam.input.max_odometry_gap_s = 0.125;
+  config.node.map_frame = "world";
+  const TemporaryFolder folder;
+  writeFileAtomically(folder / "config.yaml", toYaml(config));
+  EXPECT_EQ(toYaml(loadSystemConfig(folder / "config.yaml", {})), toYaml(config));
+}
+
+TEST(SystemConfigTest, OverridesWinOverTheFileAndBadOnesAreRefused) {
+  const std::string path = packageConfigFile("kitti.yaml");
+  EXPECT_EQ(loadSystemConfig(path, {parseOverride("seed=7")}).seed, 7U);
+  expectInputError([&] { loadSystemConfig(path, {parseOverride("sead=7")}); },
+                   {"--set", "unknown key 'sead'", "'seed'"});
+  expectInputError([&] { loadSystemConfig(path, {parseOverride("input.odometry_history=-1")}); }, {"out of range"});
+  expectInputError([] { parseOverride("seed"); }, {"--set seed", "key=value"});
+  expectInputError([] { parseOverride("=7"); }, {"key=value"});
+}
+
+TEST(SystemConfigTest, ClassTableBesideTheConfigurationComesFirst) {
+  const TemporaryFolder folder;
+  writeFileAtomically(folder / "mine.yaml", "classes:\n  - {id: 1, name: lamp}\n");
+  SystemConfig config;
+  config.class_table = "mine.yaml";
+  EXPECT_EQ(loadClassTable(config, folder.path()).names(), "lamp");
+  config.class_table = "none.yaml";
+  expectInputError([&] { loadClassTable(config, folder.path()); }, {"none.yaml"});
+}
+
+TEST(SystemConfigTest, ReferenceInTheDocumentationIsTheOneThatTheCodeMakes) {
+  EXPECT_EQ(readFile(std::string(SMHT_SOURCE_DIR) + "/docs/parameters.md"), parameterReference())
+      << "run: rosrun semantic_mht_slam parameter_reference > docs/parameters.md";
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam

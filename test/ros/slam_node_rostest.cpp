@@ -1,0 +1,137 @@
+#include <cstdlib>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <gtest/gtest.h>
+#include <nav_msgs/Path.h>
+#include <ros/ros.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "semantic_mht_slam/app/offline_runner.h"
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/ros/bag_file.h"
+#include "semantic_mht_slam/ros/conversions.h"
+
+#include "support/recordings.h"
+#include "support/temporary_folder.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr std::size_t kFrames = 120;
+constexpr Stamp kOrigin = 1000000000;
+
+/// Listens to what the node publishes while a bag is replayed into it.
+class SlamNodeTest : public ::testing::Test {
+ protected:
+  SlamNodeTest() : transform_listener_(transforms_) {
+    subscribers_.push_back(handle_.subscribe<nav_msgs::Path>(
+        "trajectory", 10, [this](const nav_msgs::PathConstPtr& m) { trajectory_ = *m; }));
+    subscribers_.push_back(handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+        "pose", 1000, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& m) { poses_.push_back(*m); }));
+    subscribers_.push_back(handle_.subscribe<visualization_msgs::MarkerArray>(
+        "markers/objects", 1000, [this](const visualization_msgs::MarkerArrayConstPtr& m) { markers_.push_back(*m); }));
+  }
+
+  /// Plays a bag at ten times real time and waits until the trajectory ends at `last`.
+  void play(const std::string& bag, Stamp last) {
+    const std::string command =
+        "rosbag play --quiet --clock --wait-for-subscribers --rate 10 --topics /objects "
+        "/odometry /tf /tf_static --bags '" +
+        bag + "' > /dev/null";
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20.0);
+    while (toStamp(trajectory_.header.stamp) != last && ros::WallTime::now() < deadline)
+      ros::WallDuration(0.05).sleep();
+    ASSERT_EQ(toStamp(trajectory_.header.stamp), last) << "the trajectory does not reach the end of the bag";
+  }
+
+  /// The trajectory of the offline runner on the same bag, stamps of the bag.
+  static std::vector<StampedPose> offlineTrajectory(const std::string& bag, const ClassTable& classes) {
+    return runOffline(readBag(bag, classes, {}, {}), SlamConfig{}, [](std::size_t, std::size_t) {}).trajectory;
+  }
+
+  void expectTrajectory(const std::vector<StampedPose>& expected) const {
+    ASSERT_EQ(trajectory_.poses.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const Pose pose = fromMessage(trajectory_.poses[i].pose);
+      EXPECT_EQ(toStamp(trajectory_.poses[i].header.stamp), expected[i].stamp + kOrigin);
+      EXPECT_EQ(pose.translation_m, expected[i].T_world_base.translation_m) << "pose " << i;
+      EXPECT_EQ(pose.rotation.coeffs(), expected[i].T_world_base.rotation.coeffs()) << "pose " << i;
+    }
+  }
+
+  ros::NodeHandle handle_;
+  tf2_ros::Buffer transforms_;
+  tf2_ros::TransformListener transform_listener_;
+  std::vector<ros::Subscriber> subscribers_;
+  nav_msgs::Path trajectory_;
+  std::vector<geometry_msgs::PoseWithCovarianceStamped> poses_;
+  std::vector<visualization_msgs::MarkerArray> markers_;
+};
+
+TEST_F(SlamNodeTest, ReplayedBagGivesTheOfflineTrajectoryAndALaterOneStartsAgain) {
+  const ClassTable classes = loadClassTable(SystemConfig{}, "");
+  const TemporaryFolder folder;
+  const std::string bag = folder / "circle.bag";
+  const Recording recording = makeCircleRecording(kFrames);
+  writeBag(bag, recording, classes, {}, {}, kOrigin);
+  const Stamp last = recording.odometry.back().stamp + kOrigin;
+  const std::vector<StampedPose> expected = offlineTrajectory(bag, classes);
+
+  play(bag, last);
+  expectTrajectory(expected);
+  EXPECT_EQ(trajectory_.header.frame_id, "map");
+  ASSERT_EQ(poses_.size(), kFrames);
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(toStamp(poses_[i].header.stamp), recording.odometry[i].stamp + kOrigin);
+    EXPECT_EQ(poses_[i].header.frame_id, "map");
+  }
+  const auto T_map_odom = transforms_.lookupTransform("map", "odom", toRosTime(last));
+  EXPECT_EQ(fromMessage(T_map_odom.transform).translation_m, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(transforms_.canTransform("map", "velodyne", toRosTime(last)));
+
+  ASSERT_EQ(markers_.size(), kFrames) << "one marker array a detector frame, empty frames included";
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    EXPECT_EQ(markers_[i].markers.size(), 1 + i % 4) << "frame " << i;
+    EXPECT_EQ(markers_[i].markers.front().action, visualization_msgs::Marker::DELETEALL);
+  }
+  const Detection& object = recording.detector_frames[1].detections[0];
+  const Eigen::Vector3d in_map = recording.odometry[1].T_world_base * object.position_m;
+  EXPECT_NEAR((fromMessage(markers_[1].markers[1].pose).translation_m - in_map).norm(), 0.0, 1e-12);
+
+  // The same bag again: the clock jumps back, the old trajectory is forgotten.
+  trajectory_ = {};
+  poses_.clear();
+  play(bag, last);
+  expectTrajectory(expected);
+  EXPECT_EQ(poses_.size(), kFrames);
+}
+
+/// Runs a second node with one wrong parameter and returns its exit code.
+int exitCodeWith(const std::string& argument) {
+  const std::string program = std::string(SMHT_PROGRAM_DIR) + "/slam_node";
+  const int status = std::system(("'" + program + "' __name:=refused " + argument + " > /dev/null 2>&1").c_str());
+  return WEXITSTATUS(status);
+}
+
+TEST(SlamNodeParametersTest, UnknownOrBadParametersEndTheNodeWithCode1) {
+  EXPECT_EQ(exitCodeWith("_no_such_parameter:=1"), 1);
+  EXPECT_EQ(exitCodeWith("_node/queue_size:=0"), 1);
+  EXPECT_EQ(exitCodeWith("_class_table:=nowhere.yaml"), 1);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "slam_node_test");
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,42 @@
+#include "semantic_mht_slam/slam/slam.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+StampedPose odometryAt(int i) {
+  return {100000000LL * i, {expRotation({0.0, 0.0, 0.01 * i}), {1.0 * i, 0.0, 0.0}}};
+}
+
+TEST(SlamTest, OdometryMethodPassesEveryUsableSampleThrough) {
+  Slam slam({});
+  EXPECT_FALSE(slam.latestPose());
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(slam.addOdometry(odometryAt(i)));
+  StampedPose broken = odometryAt(6);
+  broken.T_world_base.rotation.w() = std::nan("");
+  EXPECT_FALSE(slam.addOdometry(broken));
+  const std::vector<StampedPose> trajectory = slam.trajectory();
+  ASSERT_EQ(trajectory.size(), 5U);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(trajectory[static_cast<std::size_t>(i)].stamp, odometryAt(i).stamp);
+    EXPECT_EQ(trajectory[static_cast<std::size_t>(i)].T_world_base.translation_m,
+              odometryAt(i).T_world_base.translation_m);
+  }
+  EXPECT_EQ(slam.latestPose()->stamp, odometryAt(4).stamp);
+}
+
+TEST(SlamTest, LatestFrameFollowsTheDetections) {
+  Slam slam({});
+  slam.addDetections(odometryAt(1).stamp, {Detection{}});
+  EXPECT_FALSE(slam.latestFrame());
+  slam.addOdometry(odometryAt(1));
+  ASSERT_TRUE(slam.latestFrame());
+  EXPECT_EQ(slam.latestFrame()->stamp, odometryAt(1).stamp);
+  EXPECT_EQ(slam.latestFrame()->detections.size(), 1U);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
