@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+namespace semantic_mht_slam {
+
+/// Figures of a list of numbers; NaN for an empty list.
+double mean(const std::vector<double>& values);
+double rootMeanSquare(const std::vector<double>& values);
+
+/// Of the list itself: the mean square deviation is divided by its length.
+double standardDeviation(const std::vector<double>& values);
+
+/// The middle value, or the mean of the two in the middle.
+double median(std::vector<double> values);
+
+}  // namespace semantic_mht_slam
