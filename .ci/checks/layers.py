@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+"""Checks the layers of docs/architecture.md: a module includes only modules below it, and a library only where it has its
+home. Prints each violation as file:line and exits with code 1 if there is any. Run in the repository root.
+"""
+import re
+import sys
+from pathlib import Path
+
+# From the bottom to the top; modules of one line are siblings and do not know each other.
+LAYERS = [
+    ["common"],
+    ["models"],
+    ["map"],
+    ["mapping", "place", "graph", "perception"],
+    ["slam", "simulation", "io"],
+    ["evaluation"],
+    ["app"],
+    ["ros"],
+    ["programs"],
+]
+LEVEL = {module: level for level, modules in enumerate(LAYERS) for module in modules}
+
+# Library -> (what its includes look like, where it may be used in source files, where even in public headers).
+LIBRARIES = {
+    "ROS": (r"(ros|rosbag|tf2|tf2_ros|tf2_msgs|nodelet|diagnostic_updater|message_filters|dynamic_reconfigure|XmlRpc\w*"
+            r"|\w+_msgs|std_srvs|pcl_ros|pcl_conversions|cv_bridge)[/.]|semantic_mht_slam/[A-Z]",
+            {"ros", "perception", "programs"}, {"ros", "perception"}),
+    "Ceres": (r"(ceres|glog)/", {"graph"}, set()),
+    "FLANN": (r"flann/", {"place"}, set()),
+    "OpenCV machine learning": (r"opencv2/ml", {"place"}, set()),
+    "OpenCV": (r"opencv2/(?!ml|core)", {"perception"}, {"perception"}),
+    "OpenCV core": (r"opencv2/core", {"perception", "place"}, {"perception"}),
+    "PCL sample consensus": (r"pcl/(sample_consensus|point_types|point_cloud)", {"perception", "place"}, {"perception"}),
+    "PCL": (r"pcl/(?!sample_consensus|point_types|point_cloud)", {"perception"}, {"perception"}),
+    "yaml-cpp": (r"yaml-cpp/", {"io"}, set()),
+    "nlohmann-json": (r"nlohmann/", {"io", "app", "programs"}, set()),
+    "Boost.Program_options": (r"boost/program_options", {"programs"}, set()),
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+
+
+def module_of(path):
+    """The module that a file belongs to, and whether the file is a public header."""
+    parts = path.parts
+    return (parts[2], True) if parts[0] == "include" else (parts[1], False)
+
+
+def violations(path):
+    module, is_public = module_of(path)
+    if module not in LEVEL:
+        yield 1, f"'{module}' is no module of the layers"
+        return
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        target = match.group(1)
+        own = re.match(r"semantic_mht_slam/([a-z_]+)/", target)
+        if own:
+            other = own.group(1)
+            if other not in LEVEL:
+                yield number, f"includes '{target}' of no known module"
+            elif other != module and LEVEL[other] >= LEVEL[module]:
+                yield number, f"'{module}' includes '{target}', which does not lie below it"
+        for library, (pattern, in_sources, in_headers) in LIBRARIES.items():
+            if re.match(pattern, target) and module not in (in_headers if is_public else in_sources):
+                kind = "a public header" if is_public else "a source file"
+                yield number, f"{library} ('{target}') in {kind} of '{module}'"
+
+
+def main():
+    found = 0
+    for path in sorted([*Path("include/semantic_mht_slam").rglob("*.h"), *Path("src").rglob("*.h"),
+                        *Path("src").rglob("*.cpp")]):
+        for number, problem in violations(path):
+            print(f"{path}:{number}: {problem}")
+            found += 1
+    return 1 if found else 0
+
+
+sys.exit(main())

@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Installs what is missing (apt only) and builds the package into build/. Safe to run again: it does only what is left.
+#   scripts/setup.sh [--tests]      --tests builds the tests as well
+set -euo pipefail
+
+# Every package that building, testing and showing needs. The one list.
+PACKAGES=(
+  build-essential cmake git ccache
+  ros-core ros-core-dev rosbash librostest-dev python3-rostest
+  libtf2-ros-dev libtf2-msgs-dev tf2-tools python3-tf2-ros
+  librosbag-dev python3-rosbag libvisualization-msgs-dev libnav-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev
+  python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-msgs python3-visualization-msgs
+  libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
+  rviz libgl1-mesa-dri xvfb xauth imagemagick
+  libgtest-dev libbenchmark-dev
+)
+
+REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"  # the system's Python has catkin; another one on the PATH may not
+
+fail() {
+  printf 'setup: %s\n' "$@" >&2
+  exit 1
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "packages are missing and this user is not root and has no sudo; as root, run:" "  apt-get install ${MISSING[*]}"
+  fi
+}
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+install_missing() {
+  MISSING=()
+  for package in "${PACKAGES[@]}"; do is_installed "$package" || MISSING+=("$package"); done
+  [ "${#MISSING[@]}" -eq 0 ] && return
+  echo "setup: installing ${#MISSING[@]} packages: ${MISSING[*]}"
+  local log
+  log=$(mktemp)
+  if ! as_root apt-get update >"$log" 2>&1 ||
+    ! as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${MISSING[@]}" >"$log" 2>&1; then
+    tail -n 20 "$log" >&2
+    fail "apt could not install: ${MISSING[*]}" \
+      "the end of its output is above (all of it: $log); check the network and the package sources (Debian 12 or" \
+      "Ubuntu 20.04 with the ROS repository), then run this again"
+  fi
+  rm -f "$log"
+}
+
+# catkin's and genmsg's generators break at blanks in a path: such a checkout is built through a link without any.
+link_without_blanks() {
+  local link
+  link="${TMPDIR:-/tmp}/semantic_mht_slam-$(id -u)-$(printf '%s' "$1" | cksum | cut -d' ' -f1)"
+  [[ "$link" != *[[:space:]]* ]] || fail "TMPDIR must not hold blanks: $link"
+  ln -sfn "$1" "$link"
+  printf '%s\n' "$link"
+}
+
+configure_and_build() {
+  local source=$REPOSITORY tests=$1 log
+  [[ "$source" != *[[:space:]]* ]] || source=$(link_without_blanks "$REPOSITORY")
+  local build="$source/build/workspace"
+  mkdir -p "$build"
+  printf '%s\n' "$build" >"$REPOSITORY/build/location"
+  log="$build/configure.log"
+  if ! (cd "$source" && cmake -S "$source" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON \
+    -DCATKIN_DEVEL_PREFIX="$build/devel" -DCMAKE_INSTALL_PREFIX="$build/install" \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
+    -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) >"$log" 2>&1; then
+    tail -n 30 "$log" >&2
+    fail "configuring failed; the end of its output is above (all of it: $log)"
+  fi
+  cmake --build "$build" -- -j"$(nproc)" --no-print-directory all ${tests:+tests} >"$build/build.log" 2>&1 || {
+    grep -E -A5 "error:|\*\*\*" "$build/build.log" | head -n 60 >&2 || true
+    fail "building failed; the first errors are above (all of it: $build/build.log)"
+  }
+}
+
+install_missing
+echo "setup: building"
+case "${1:-}" in
+  "") configure_and_build "" ;;
+  --tests) configure_and_build tests ;;
+  *) fail "unknown option $1" ;;
+esac

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, runs every check and test, and ends with "N passed, N failed, N skipped".
+# Tests on KITTI data look for the folder SEMANTIC_MHT_SLAM_DATA, else ../shared/data beside the checkout, and are
+# skipped where there is none.
+set -uo pipefail
+REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"
+"$REPOSITORY/scripts/setup.sh" --tests || exit 1
+
+# shellcheck source=scripts/environment.sh
+source "$REPOSITORY/scripts/environment.sh"
+if [ -z "${SEMANTIC_MHT_SLAM_DATA:-}" ] && [ -d "$REPOSITORY/../shared/data" ]; then
+  SEMANTIC_MHT_SLAM_DATA=$(cd "$REPOSITORY/../shared/data" && pwd -P)
+fi
+export SEMANTIC_MHT_SLAM_DATA=${SEMANTIC_MHT_SLAM_DATA:-}
+export ROS_LOG_DIR="$BUILD_FOLDER/ros_logs"
+
+echo "test: running (output: $BUILD_FOLDER/tests.log)"
+rm -rf "$BUILD_FOLDER/test_results"
+cmake --build "$BUILD_FOLDER" -- -j1 run_tests >"$BUILD_FOLDER/tests.log" 2>&1
+exec python3 "$REPOSITORY/scripts/summarize_tests.py" "$BUILD_FOLDER/test_results" "$REPOSITORY"

@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/text.h"
+#include "semantic_mht_slam/evaluation/landmark_error.h"
+#include "semantic_mht_slam/evaluation/rigid_alignment.h"
+#include "semantic_mht_slam/evaluation/svg_plot.h"
+#include "semantic_mht_slam/evaluation/trajectory_error.h"
+#include "semantic_mht_slam/io/calibration_file.h"
+#include "semantic_mht_slam/io/csv_file.h"
+#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/trajectory_file.h"
+
+#include "evaluate_commands.h"
+#include "evaluate_files.h"
+#include "program.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr const char* kUsage =
+    "Mapped landmarks against true ones, matched one to one within a radius in the plane.\n"
+    "\n"
+    "usage: evaluate landmarks --truth landmarks.csv --landmarks landmarks.csv [--radius R] [--class NAME ...]\n"
+    "           [--ignore-class] [--poses poses.txt [--calib calib.txt] [--trajectory trajectory.txt] [--align se3]]\n"
+    "           [--json] [--output DIR]\n"
+    "\n"
+    "Both files hold columns x,y and optionally z,class in metres, or are rows x,y[,z] without a header. The truth is "
+    "in\n"
+    "the Velodyne frame of the first true pose. With --poses ghosts are counted per kilometre; with --trajectory the "
+    "map\n"
+    "is moved by the alignment of the trajectory that it was made along.\n";
+
+struct Options {
+  std::string truth_path;
+  std::string map_path;
+  std::string poses_path;
+  std::string trajectory_path;
+  std::string calibration_path;
+  std::string alignment;
+  std::string folder;
+  std::vector<std::string> classes;
+  double radius_m = 1.0;
+  bool ignore_class = false;
+  bool as_json = false;
+};
+
+/// A landmark with the number that its file gives it, or its place in the file.
+struct NumberedLandmarks {
+  std::vector<std::int64_t> ids;
+  std::vector<PointLandmark> landmarks;
+};
+
+bool hasHeader(const std::string& content) {
+  bool is_first = true;
+  bool has_header = true;
+  forEachLine(content, [&](int, std::string_view text) {
+    if (is_first) has_header = !parseDouble(split(text, ',').front());
+    is_first = false;
+  });
+  return has_header;
+}
+
+NumberedLandmarks readRows(const std::string& path, const std::string& content) {
+  NumberedLandmarks result;
+  forEachLine(content, [&](int line, std::string_view text) {
+    const std::vector<std::string_view> cells = split(text, ',');
+    if (cells.size() != 2 && cells.size() != 3) throw InputError(at(path, line) + ": a row x,y or x,y,z was expected");
+    PointLandmark landmark;
+    landmark.has_height = cells.size() == 3;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::optional<double> value = parseDouble(cells[i]);
+      if (!value || !std::isfinite(*value)) {
+        throw InputError(at(path, line) + ": '" + std::string(cells[i]) + "' is not a finite number");
+      }
+      landmark.position_m(static_cast<Eigen::Index>(i)) = *value;
+    }
+    result.ids.push_back(static_cast<std::int64_t>(result.ids.size()));
+    result.landmarks.push_back(landmark);
+  });
+  return result;
+}
+
+NumberedLandmarks readTable(const std::string& path) {
+  const CsvReader reader({"x", "y"}, {"z", "class", "id", "landmark", "existence", "observations"});
+  NumberedLandmarks result;
+  reader.read(path, [&](const CsvRow& row) {
+    PointLandmark landmark;
+    landmark.has_height = row.has(2);
+    landmark.position_m = {row.number(0), row.number(1), row.optionalNumber(2).value_or(0.0)};
+    if (row.has(3)) landmark.class_name = std::string(row.text(3));
+    const std::size_t id_column = row.has(4) ? 4 : 5;
+    result.ids.push_back(row.has(id_column) ? row.integer(id_column) : static_cast<std::int64_t>(result.ids.size()));
+    result.landmarks.push_back(landmark);
+  });
+  return result;
+}
+
+/// Landmarks of the wanted classes; those of unknown class always stay.
+NumberedLandmarks readLandmarks(const std::string& path, const std::vector<std::string>& classes) {
+  const std::string content = readFile(path);
+  NumberedLandmarks all = hasHeader(content) ? readTable(path) : readRows(path, content);
+  if (classes.empty()) return all;
+  NumberedLandmarks result;
+  for (std::size_t i = 0; i < all.ids.size(); ++i) {
+    const std::string& name = all.landmarks[i].class_name;
+    if (!name.empty() && std::find(classes.begin(), classes.end(), name) == classes.end()) continue;
+    result.ids.push_back(all.ids[i]);
+    result.landmarks.push_back(all.landmarks[i]);
+  }
+  return result;
+}
+
+std::vector<Eigen::Vector3d> positions(const std::vector<Pose>& poses, const Pose& T_target_world) {
+  std::vector<Eigen::Vector3d> result;
+  result.reserve(poses.size());
+  for (const Pose& pose : poses) result.push_back(T_target_world * pose.translation_m);
+  return result;
+}
+
+/// From the frame of the map to that of the true landmarks, by the trajectories of the Velodyne in both.
+Pose alignment(const Options& options, const std::vector<Pose>& T_world_cam0) {
+  if (options.trajectory_path.empty() || options.alignment == "none") return Pose::identity();
+  const std::vector<Pose> estimate_cam0 = readKittiTrajectory(options.trajectory_path);
+  requireSameLength(options.poses_path, T_world_cam0.size(), options.trajectory_path, estimate_cam0.size());
+  const Pose T_cam0_velodyne = readCalibration(options.calibration_path.empty() ? calibrationBeside(options.poses_path)
+                                                                                : options.calibration_path);
+  const std::vector<Pose> truth = inVelodyneFrame(T_world_cam0, T_cam0_velodyne);
+  const std::vector<Eigen::Vector3d> true_m = positions(truth, truth.front().inverse());
+  const std::vector<Eigen::Vector3d> estimated_m =
+      positions(inVelodyneFrame(estimate_cam0, T_cam0_velodyne), Pose::identity());
+  return options.alignment == "se2" ? planarAlignment(estimated_m, true_m) : rigidAlignment(estimated_m, true_m);
+}
+
+LandmarkComparison comparison(const Options& options) {
+  LandmarkComparison result;
+  result.radius_m = options.radius_m;
+  result.match_class = !options.ignore_class;
+  if (options.poses_path.empty()) return result;
+  const std::vector<Pose> T_world_cam0 = readKittiTrajectory(options.poses_path);
+  const double length_m = pathLength(poseMatrices(T_world_cam0));
+  if (length_m > 0.0) result.driven_length_m = length_m;
+  result.T_truth_map = alignment(options, T_world_cam0);
+  return result;
+}
+
+nlohmann::json toJson(const LandmarkError& error) {
+  return {{"true_landmarks", error.true_landmarks},
+          {"mapped_landmarks", error.mapped_landmarks},
+          {"matches", error.matches.size()},
+          {"duplicates", error.duplicates},
+          {"ghosts", error.ghosts},
+          {"recall", error.recall},
+          {"precision", error.precision},
+          {"duplicates_per_true", error.duplicates_per_true},
+          {"ghosts_per_km", error.ghosts_per_km},
+          {"rmse_m", error.rmse_m},
+          {"median_m", error.median_m},
+          {"height_rmse_m", error.height_rmse_m}};
+}
+
+std::string table(const LandmarkError& error) {
+  return "landmarks " + std::to_string(error.mapped_landmarks) + " mapped, " + std::to_string(error.true_landmarks) +
+         " true, " + std::to_string(error.matches.size()) + " matched; recall " + figure(error.recall, 3) +
+         " precision " + figure(error.precision, 3) + "\n" + "duplicates " + std::to_string(error.duplicates) + " = " +
+         figure(error.duplicates_per_true, 3) + " per true landmark; ghosts " + std::to_string(error.ghosts) + " = " +
+         figure(error.ghosts_per_km, 2) + " per km\n" + "position RMSE " + figure(error.rmse_m, 3) + " m, median " +
+         figure(error.median_m, 3) + " m; height RMSE " + figure(error.height_rmse_m, 3) + " m\n";
+}
+
+std::string matchesCsv(const LandmarkError& error, const NumberedLandmarks& truth, const NumberedLandmarks& map) {
+  std::string text = "truth,landmark,distance_m\n";
+  for (const LandmarkMatch& match : error.matches) {
+    text += std::to_string(truth.ids[match.truth]) + "," + std::to_string(map.ids[match.mapped]) + "," +
+            formatFixed(match.distance_m, 6) + "\n";
+  }
+  return text;
+}
+
+PlotSeries dots(const std::string& label, const NumberedLandmarks& landmarks, const Pose& T_truth_source) {
+  PlotSeries series;
+  series.label = label;
+  series.style = PlotSeries::Style::kDots;
+  for (const PointLandmark& landmark : landmarks.landmarks) {
+    const Eigen::Vector3d position_m = T_truth_source * landmark.position_m;
+    series.x.push_back(position_m.x());
+    series.y.push_back(position_m.y());
+  }
+  return series;
+}
+
+std::string mapPlot(const NumberedLandmarks& truth, const NumberedLandmarks& map, const Pose& T_truth_map) {
+  Plot plot;
+  plot.title = "Landmarks";
+  plot.x_label = "x [m]";
+  plot.y_label = "y [m]";
+  plot.equal_aspect = true;
+  plot.series = {dots("truth", truth, Pose::identity()), dots("map", map, T_truth_map)};
+  plot.series.front().color = "#333333";
+  return svgPlot(plot);
+}
+
+po::options_description describe(Options& values) {
+  po::options_description options("options");
+  options.add_options()("truth", po::value(&values.truth_path)->required(), "true landmarks")(
+      "landmarks", po::value(&values.map_path)->required(), "mapped landmarks")(
+      "radius", po::value(&values.radius_m)->default_value(1.0, "1"), "largest distance of a match, m")(
+      "class", po::value(&values.classes)->multitoken()->composing(), "compare landmarks of these classes alone")(
+      "ignore-class", po::bool_switch(&values.ignore_class), "match landmarks of different classes, too")(
+      "poses", po::value(&values.poses_path), "true poses, KITTI format")(
+      "trajectory", po::value(&values.trajectory_path), "estimated poses of the map's run, KITTI format")(
+      "calib", po::value(&values.calibration_path), "calibration; default: calib.txt beside the poses")(
+      "align", po::value(&values.alignment)->default_value("se3"), "se3, se2 or none")(
+      "json", po::bool_switch(&values.as_json), "print JSON in place of a table")(
+      "output", po::value(&values.folder), "folder for landmarks.json, landmark_matches.csv and landmarks.svg");
+  return options;
+}
+
+void check(const Options& options) {
+  if (!(options.radius_m > 0.0) || !std::isfinite(options.radius_m)) throw InputError("--radius must be positive");
+  if (options.alignment != "se3" && options.alignment != "se2" && options.alignment != "none") {
+    throw InputError("--align is '" + options.alignment + "', one of se3, se2 and none was expected");
+  }
+  if (!options.trajectory_path.empty() && options.poses_path.empty()) throw InputError("--trajectory needs --poses");
+}
+
+}  // namespace
+
+int evaluateLandmarks(const std::vector<std::string>& arguments) {
+  Options options;
+  if (!parseOrHelp(arguments, kUsage, describe(options))) return 0;
+  check(options);
+  const NumberedLandmarks truth = readLandmarks(options.truth_path, options.classes);
+  const NumberedLandmarks map = readLandmarks(options.map_path, options.classes);
+  const LandmarkComparison how = comparison(options);
+  const LandmarkError error = landmarkError(truth.landmarks, map.landmarks, how);
+  const nlohmann::json json = toJson(error);
+  OutputFiles files = {{"landmarks.json", jsonText(json)}};
+  if (!options.folder.empty()) {
+    files.emplace_back("landmark_matches.csv", matchesCsv(error, truth, map));
+    files.emplace_back("landmarks.svg", mapPlot(truth, map, how.T_truth_map));
+  }
+  report(options.as_json, json, table(error), options.folder, files);
+  return 0;
+}
+
+}  // namespace semantic_mht_slam

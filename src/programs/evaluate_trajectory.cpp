@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/common/text.h"
+#include "semantic_mht_slam/evaluation/svg_plot.h"
+#include "semantic_mht_slam/evaluation/trajectory_error.h"
+#include "semantic_mht_slam/evaluation/trajectory_plot.h"
+
+#include "evaluate_commands.h"
+#include "evaluate_files.h"
+#include "program.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+namespace po = boost::program_options;
+
+constexpr const char* kUsage =
+    "Errors of trajectories against the truth, all in KITTI format with a row a frame.\n"
+    "\n"
+    "usage: evaluate trajectory --truth poses.txt --estimate FILE [--estimate FILE ...] [--json] [--output DIR]\n"
+    "\n"
+    "  first    RMSE of the positions with the first poses made equal, m\n"
+    "  se3      RMSE after a rigid least-squares alignment, m\n"
+    "  running  mean and standard deviation over the frames of the RMSE up to the frame, unaligned, m\n"
+    "  t_rel    translation error over 100..800 m of driving, %; r_rel: rotation error, deg/100 m\n"
+    "  revisit  median error of the relative translation between visits of the same place, m\n";
+
+constexpr std::size_t kNameColumns = 40;
+
+struct Run {
+  std::string path;
+  std::string label;  ///< tells the runs apart in plots and columns
+  std::vector<PoseMatrix> poses;
+  TrajectoryError error;
+  FrameErrors frames;
+};
+
+std::string lastParts(const std::filesystem::path& path, int parts) {
+  std::filesystem::path result = path.stem();
+  std::filesystem::path folder = path.parent_path();
+  for (int i = 1; i < parts && folder.has_filename(); ++i, folder = folder.parent_path()) {
+    result = folder.filename() / result;
+  }
+  return result.string();
+}
+
+/// The file names, with as many folders before them as it takes to tell them apart.
+std::vector<std::string> labels(const std::vector<std::string>& paths) {
+  constexpr int kMaxParts = 8;
+  std::vector<std::string> result;
+  for (int parts = 1; parts <= kMaxParts; ++parts) {
+    result.clear();
+    for (const std::string& path : paths) result.push_back(lastParts(path, parts));
+    if (std::set<std::string>(result.begin(), result.end()).size() == paths.size()) return result;
+  }
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] += " " + std::to_string(i + 1);
+  return result;
+}
+
+std::vector<Run> evaluateRuns(const std::string& truth_path, const std::vector<PoseMatrix>& truth,
+                              const std::vector<std::string>& paths) {
+  const std::vector<std::string> names = labels(paths);
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    Run run{paths[i], names[i], readPoseMatrices(paths[i]), {}, {}};
+    requireSameLength(truth_path, truth.size(), run.path, run.poses.size());
+    run.error = trajectoryError(truth, run.poses);
+    run.frames = frameErrors(truth, run.poses);
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+nlohmann::json toJson(const TrajectoryError& error) {
+  return {{"first_m", error.first_m},
+          {"se3_m", error.se3_m},
+          {"running_mean_m", error.running_mean_m},
+          {"running_std_m", error.running_std_m},
+          {"t_rel_percent", error.t_rel_percent},
+          {"r_rel_deg_per_100m", error.r_rel_deg_per_100m},
+          {"revisit_m", error.revisit_m},
+          {"end_m", error.end_m}};
+}
+
+nlohmann::json toJson(const std::vector<Run>& runs) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const Run& run : runs) json[run.path] = toJson(run.error);
+  return json;
+}
+
+std::string leftAligned(std::string text, std::size_t width) {
+  text.resize(std::max(text.size(), width), ' ');
+  return text;
+}
+
+std::string table(const std::vector<Run>& runs) {
+  std::string text = leftAligned("estimate", kNameColumns) + padded("first", 8) + padded("se3", 8) +
+                     padded("running", 15) + padded("t_rel%", 8) + padded("r_rel", 8) + padded("revisit", 9) + "\n";
+  for (const Run& run : runs) {
+    const TrajectoryError& e = run.error;
+    const std::string name = run.path.substr(run.path.size() - std::min(run.path.size(), kNameColumns));
+    text += leftAligned(name, kNameColumns) + padded(figure(e.first_m, 2), 8) + padded(figure(e.se3_m, 2), 8) +
+            padded(figure(e.running_mean_m, 2), 8) + "\u00b1" + leftAligned(figure(e.running_std_m, 2), 6) +
+            padded(figure(e.t_rel_percent, 2), 8) + padded(figure(e.r_rel_deg_per_100m, 2), 8) +
+            padded(figure(e.revisit_m, 2), 9) + "\n";
+  }
+  return text;
+}
+
+std::string errorsCsv(const std::vector<Run>& runs, std::size_t frames) {
+  std::string text = "frame";
+  for (const Run& run : runs) {
+    std::string label = run.label;
+    std::replace(label.begin(), label.end(), ',', '_');
+    for (const char* column : {"_unaligned_m", "_aligned_m", "_running_rmse_m"})
+      text.append(",").append(label).append(column);
+  }
+  text += "\n";
+  for (std::size_t i = 0; i < frames; ++i) {
+    text += std::to_string(i);
+    for (const Run& run : runs) {
+      text += "," + formatFixed(run.frames.unaligned_m[i], 6) + "," + formatFixed(run.frames.aligned_m[i], 6) + "," +
+              formatFixed(run.frames.running_rmse_m[i], 6);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+NamedPath namedPath(const std::string& name, const std::vector<PoseMatrix>& poses) {
+  NamedPath path{name, {}};
+  for (const PoseMatrix& pose : poses) path.positions_m.emplace_back(pose.translation());
+  return path;
+}
+
+OutputFiles files(const std::vector<PoseMatrix>& truth, const std::vector<Run>& runs) {
+  std::vector<NamedPath> paths = {namedPath("truth", truth)};
+  std::vector<NamedErrors> errors;
+  for (const Run& run : runs) {
+    paths.push_back(namedPath(run.label, startingAt(truth.front(), run.poses)));
+    errors.push_back({run.label, run.frames.running_rmse_m});
+  }
+  return {{"trajectory.json", jsonText(toJson(runs))},
+          {"trajectory_errors.csv", errorsCsv(runs, truth.size())},
+          {"trajectory.svg", svgPlot(trajectoryPlot(paths, GroundPlane::kXRightZForward))},
+          {"running_rmse.svg", svgPlot(errorPlot("Error up to the frame, unaligned", "RMSE [m]", errors))}};
+}
+
+}  // namespace
+
+int evaluateTrajectory(const std::vector<std::string>& arguments) {
+  std::string truth_path;
+  std::string folder;
+  std::vector<std::string> paths;
+  bool as_json = false;
+  po::options_description options("options");
+  options.add_options()("truth", po::value(&truth_path)->required(), "true poses")(
+      "estimate", po::value(&paths)->required()->multitoken()->composing(), "estimated poses, one or more files")(
+      "json", po::bool_switch(&as_json), "print JSON in place of a table")(
+      "output", po::value(&folder),
+      "folder for trajectory.json, trajectory_errors.csv, trajectory.svg and running_rmse.svg");
+  if (!parseOrHelp(arguments, kUsage, options)) return 0;
+
+  const std::vector<PoseMatrix> truth = readPoseMatrices(truth_path);
+  const std::vector<Run> runs = evaluateRuns(truth_path, truth, paths);
+  report(as_json, toJson(runs), table(runs), folder, folder.empty() ? OutputFiles{} : files(truth, runs));
+  return 0;
+}
+
+}  // namespace semantic_mht_slam

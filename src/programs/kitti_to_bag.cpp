@@ -1,0 +1,67 @@
+#include <cstdio>
+#include <string>
+
+#include <boost/program_options.hpp>
+
+#include "semantic_mht_slam/app/recording.h"
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/dataset.h"
+#include "semantic_mht_slam/io/yaml_file.h"
+#include "semantic_mht_slam/ros/bag_file.h"
+
+#include "program.h"
+
+namespace po = boost::program_options;
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr const char* kUsage =
+    "Makes a bag of a data-set folder: objects, odometry, tf and, where poses.txt is there, ground truth.\n"
+    "  kitti_to_bag --dataset DIR [--objects FILE] [--odometry FILE] --output FILE.bag\n";
+
+struct Arguments {
+  DatasetFiles dataset;
+  std::string classes = packageConfigFile("classes_semantic_kitti.yaml");
+  std::string output;
+  double start_s = 1.0;
+};
+
+po::options_description makeOptions(Arguments& arguments) {
+  po::options_description options("Options");
+  auto add = options.add_options();
+  add("dataset", po::value(&arguments.dataset.folder)->value_name("DIR"), "folder with times.txt, calib.txt, ...");
+  add("objects", po::value(&arguments.dataset.objects)->value_name("FILE"), "objects CSV; default: objects.csv");
+  add("odometry", po::value(&arguments.dataset.odometry)->value_name("FILE"),
+      "odometry in KITTI format; default: odometry/vo_orb.txt");
+  add("classes", po::value(&arguments.classes)->value_name("FILE"), "class table; default: SemanticKITTI's");
+  add("start", po::value(&arguments.start_s)->value_name("SECONDS"),
+      "ROS time of the data set's time 0, above 0; default: 1");
+  add("output", po::value(&arguments.output)->value_name("FILE"), "the bag");
+  return options;
+}
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  if (!parseOrHelp({argv + 1, argv + argc}, kUsage, makeOptions(arguments))) return 0;
+  if (arguments.dataset.folder.empty()) throw InputError("--dataset is needed");
+  if (arguments.output.empty()) throw InputError("--output is needed");
+  if (!(arguments.start_s > 0.0 && arguments.start_s < 4e9))
+    throw InputError("--start must be above 0 and below 4e9 s");
+
+  const ClassTable classes = readClassTable(arguments.classes);
+  const Recording recording = toRecording(readDataset(arguments.dataset, classes));
+  writeBag(arguments.output, recording, classes, NodeConfig{}, BagLayout{}, stampFromSeconds(arguments.start_s));
+  std::size_t objects = 0;
+  for (const DetectorFrame& frame : recording.detector_frames) objects += frame.detections.size();
+  std::printf("%zu frames and %zu objects in %s\n", recording.odometry.size(), objects, arguments.output.c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
+
+int main(int argc, char** argv) {
+  return semantic_mht_slam::runProgram("kitti_to_bag", [&] { return semantic_mht_slam::run(argc, argv); });
+}

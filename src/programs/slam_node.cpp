@@ -1,0 +1,41 @@
+#include "semantic_mht_slam/ros/slam_node.h"
+
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include <ros/ros.h>
+
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/ros/parameters.h"
+
+#include "program.h"
+
+namespace {
+
+constexpr char kHelp[] =
+    "The ROS node: semantic objects and odometry in, trajectory and tf map -> odom out.\n"
+    "  rosrun semantic_mht_slam slam_node [_parameter:=value ...] [objects:=/topic] [odometry:=/topic]\n"
+    "Parameters are those of config/kitti.yaml, as private parameters; docs/parameters.md lists them.\n";
+
+int run(int argc, char** argv) {
+  using namespace semantic_mht_slam;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
+      std::fputs(kHelp, stdout);
+      return 0;
+    }
+  }
+  ros::init(argc, argv, "slam_node");
+  const SystemConfig config = makeSystemConfig(readParameters(ros::NodeHandle("~")));
+  const ClassTable classes = loadClassTable(config, "");
+  const SlamNode node(ros::NodeHandle(), config, classes);
+  ros::spin();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return semantic_mht_slam::runProgram("slam_node", [&] { return run(argc, argv); });
+}

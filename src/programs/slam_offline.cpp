@@ -1,0 +1,107 @@
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "semantic_mht_slam/app/offline_runner.h"
+#include "semantic_mht_slam/app/recording.h"
+#include "semantic_mht_slam/app/result_files.h"
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/dataset.h"
+#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/ros/bag_file.h"
+
+#include "program.h"
+#include "progress.h"
+
+namespace po = boost::program_options;
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr const char* kUsage =
+    "Runs the system on a data-set folder or a bag, as fast as it goes.\n"
+    "  slam_offline --dataset DIR [--objects FILE] [--odometry FILE] --output DIR\n"
+    "  slam_offline --bag FILE --output DIR\n";
+
+struct Arguments {
+  std::string config = packageConfigFile("kitti.yaml");
+  std::string bag;
+  std::string output;
+  DatasetFiles dataset;
+  std::vector<std::string> settings;
+  std::string method;
+  std::string seed;
+};
+
+po::options_description makeOptions(Arguments& arguments) {
+  po::options_description options("Options");
+  auto add = options.add_options();
+  add("config", po::value(&arguments.config)->value_name("FILE"), "parameters; default: the package's kitti.yaml");
+  add("dataset", po::value(&arguments.dataset.folder)->value_name("DIR"), "folder with times.txt, calib.txt, ...");
+  add("objects", po::value(&arguments.dataset.objects)->value_name("FILE"), "objects CSV; default: objects.csv");
+  add("odometry", po::value(&arguments.dataset.odometry)->value_name("FILE"),
+      "odometry in KITTI format; default: odometry/vo_orb.txt");
+  add("bag", po::value(&arguments.bag)->value_name("FILE"), "bag with objects and odometry, in place of --dataset");
+  add("method", po::value(&arguments.method)->value_name("NAME"), "the same as --set method=NAME");
+  add("seed", po::value(&arguments.seed)->value_name("N"), "the same as --set seed=N");
+  add("set", po::value(&arguments.settings)->value_name("KEY=VALUE")->composing(),
+      "changes a parameter; may be given several times");
+  add("output", po::value(&arguments.output)->value_name("DIR"), "folder for the results; made if missing");
+  return options;
+}
+
+SystemConfig loadConfig(const Arguments& arguments) {
+  std::vector<Setting> overrides;
+  for (const std::string& text : arguments.settings) overrides.push_back(parseOverride(text));
+  if (!arguments.method.empty()) overrides.push_back({"method", arguments.method, "--method"});
+  if (!arguments.seed.empty()) overrides.push_back({"seed", arguments.seed, "--seed"});
+  return loadSystemConfig(arguments.config, overrides);
+}
+
+Recording loadRecording(const Arguments& arguments, const ClassTable& classes, const SystemConfig& config) {
+  if (!arguments.bag.empty()) return readBag(arguments.bag, classes, config.node, BagLayout{});
+  return toRecording(readDataset(arguments.dataset, classes));
+}
+
+void printSummary(const Recording& recording, const RunResult& result, const std::string& output) {
+  std::printf("%zu frames in %.2f s", result.trajectory.size(), result.seconds);
+  if (const auto error = scoreRun(recording, result.trajectory)) {
+    std::printf("; error: SE3-aligned %.3f m, running %.3f +- %.3f m, t_rel %.3f %%", error->se3_m,
+                error->running_mean_m, error->running_std_m, error->t_rel_percent);
+  }
+  std::printf("; results in %s\n", output.c_str());
+}
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  if (!parseOrHelp({argv + 1, argv + argc}, kUsage, makeOptions(arguments))) return 0;
+  if (arguments.bag.empty() == arguments.dataset.folder.empty())
+    throw InputError("one of --dataset and --bag is needed");
+  if (arguments.output.empty()) throw InputError("--output is needed");
+
+  const SystemConfig config = loadConfig(arguments);
+  const std::string config_folder = std::filesystem::path(arguments.config).parent_path().string();
+  const ClassTable classes = loadClassTable(config, config_folder);
+  const Recording recording = loadRecording(arguments, classes, config);
+  prepareOutputFolder(arguments.output);
+
+  Progress progress("frames");
+  const RunResult result =
+      runOffline(recording, config.slam, [&](std::size_t done, std::size_t all) { progress(done, all); });
+  writeResultFiles(arguments.output, recording, result, config);
+  const std::size_t map_bytes = writeMapFile(arguments.output + "/map.bag", result.trajectory, classes, config.node);
+  writeReport(arguments.output, recording, result, config, map_bytes);
+  printSummary(recording, result, arguments.output);
+  return 0;
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
+
+int main(int argc, char** argv) {
+  return semantic_mht_slam::runProgram("slam_offline", [&] { return semantic_mht_slam::run(argc, argv); });
+}
