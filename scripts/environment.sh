@@ -1,8 +1,8 @@
-# Sourced by the other scripts: BUILD_FOLDER and the ROS environment of the built package.
+# Sourced by the other scripts: WORKSPACE, PROGRAMS and the ROS environment of the built package.
 _repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
-BUILD_FOLDER=$(cat "$_repository/build/location")
+WORKSPACE=$(cat "$_repository/build/location")
 set +u  # the generated file reads variables that may not be set
 # shellcheck disable=SC1091
-source "$BUILD_FOLDER/devel/setup.bash"
+source "$WORKSPACE/devel/setup.bash"
 set -u
-PROGRAMS="$BUILD_FOLDER/devel/lib/semantic_mht_slam"
+PROGRAMS="$WORKSPACE/devel/lib/semantic_mht_slam"

@@ -24,13 +24,7 @@ fail() {
 }
 
 as_root() {
-  if [ "$(id -u)" -eq 0 ]; then
-    "$@"
-  elif command -v sudo >/dev/null; then
-    sudo "$@"
-  else
-    fail "packages are missing and this user is not root and has no sudo; as root, run:" "  apt-get install ${MISSING[*]}"
-  fi
+  if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
@@ -40,6 +34,9 @@ install_missing() {
   for package in "${PACKAGES[@]}"; do is_installed "$package" || MISSING+=("$package"); done
   [ "${#MISSING[@]}" -eq 0 ] && return
   echo "setup: installing ${#MISSING[@]} packages: ${MISSING[*]}"
+  if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+    fail "this user is not root and has no sudo; as root, run:" "  apt-get install --no-install-recommends ${MISSING[*]}"
+  fi
   local log
   log=$(mktemp)
   if ! as_root apt-get update >"$log" 2>&1 ||
@@ -62,19 +59,28 @@ link_without_blanks() {
 }
 
 configure_and_build() {
-  local source=$REPOSITORY tests=$1 log
-  [[ "$source" != *[[:space:]]* ]] || source=$(link_without_blanks "$REPOSITORY")
-  local build="$source/build/workspace"
+  local base=$REPOSITORY tests=$1 log
+  [[ "$base" != *[[:space:]]* ]] || base=$(link_without_blanks "$REPOSITORY")
+  local workspace="$base/build/workspace"
+  local link="$workspace/src/semantic_mht_slam" source="$base" build="$workspace/build"
   mkdir -p "$build"
-  printf '%s\n' "$build" >"$REPOSITORY/build/location"
+  [ ! -L "$link" ] || rm "$link"
+  mkdir -p "$link"
+  for entry in "$REPOSITORY"/*; do
+    [ "$entry" = "$REPOSITORY/build" ] || ln -sfn "../../../../$(basename "$entry")" "$link/"
+  done
+  printf '%s\n' "$workspace" >"$REPOSITORY/build/location"
   log="$build/configure.log"
   if ! (cd "$source" && cmake -S "$source" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON \
-    -DCATKIN_DEVEL_PREFIX="$build/devel" -DCMAKE_INSTALL_PREFIX="$build/install" \
+    -DCATKIN_DEVEL_PREFIX="$workspace/devel" -DCMAKE_INSTALL_PREFIX="$workspace/install" \
     -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
     -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) >"$log" 2>&1; then
     tail -n 30 "$log" >&2
     fail "configuring failed; the end of its output is above (all of it: $log)"
   fi
+  # rosrun does not look for programs below the build folder of a package. ROS is told of a folder of links to everything
+  # but the build folder.
+  printf '%s' "$link" >"$workspace/devel/.catkin"
   cmake --build "$build" -- -j"$(nproc)" --no-print-directory all ${tests:+tests} >"$build/build.log" 2>&1 || {
     grep -E -A5 "error:|\*\*\*" "$build/build.log" | head -n 60 >&2 || true
     fail "building failed; the first errors are above (all of it: $build/build.log)"

@@ -13,9 +13,9 @@ if [ -z "${SEMANTIC_MHT_SLAM_DATA:-}" ] && [ -d "$REPOSITORY/../shared/data" ]; 
   SEMANTIC_MHT_SLAM_DATA=$(cd "$REPOSITORY/../shared/data" && pwd -P)
 fi
 export SEMANTIC_MHT_SLAM_DATA=${SEMANTIC_MHT_SLAM_DATA:-}
-export ROS_LOG_DIR="$BUILD_FOLDER/ros_logs"
+export ROS_LOG_DIR="$WORKSPACE/ros_logs"
 
-echo "test: running (output: $BUILD_FOLDER/tests.log)"
-rm -rf "$BUILD_FOLDER/test_results"
-cmake --build "$BUILD_FOLDER" -- -j1 run_tests >"$BUILD_FOLDER/tests.log" 2>&1
-exec python3 "$REPOSITORY/scripts/summarize_tests.py" "$BUILD_FOLDER/test_results" "$REPOSITORY"
+echo "test: running (output: $WORKSPACE/build/tests.log)"
+rm -rf "$WORKSPACE/build/test_results"
+cmake --build "$WORKSPACE/build" -- -j1 run_tests >"$WORKSPACE/build/tests.log" 2>&1
+exec python3 "$REPOSITORY/scripts/summarize_tests.py" "$WORKSPACE/build/test_results" "$REPOSITORY"

@@ -22,13 +22,14 @@ LEVEL = {module: level for level, modules in enumerate(LAYERS) for module in mod
 
 # Library -> (what its includes look like, where it may be used in source files, where even in public headers).
 LIBRARIES = {
-    "ROS": (r"(ros|rosbag|tf2|tf2_ros|tf2_msgs|nodelet|diagnostic_updater|message_filters|dynamic_reconfigure|XmlRpc\w*"
-            r"|\w+_msgs|std_srvs|pcl_ros|pcl_conversions|cv_bridge)[/.]|semantic_mht_slam/[A-Z]",
+    "ROS": (r"(ros|rosbag|roslib|rosconsole|console_bridge|tf|tf2|tf2_\w+|nodelet|pluginlib|class_loader|actionlib|rviz"
+            r"|diagnostic_updater|message_filters|image_transport|dynamic_reconfigure|XmlRpc\w*|\w+_msgs|std_srvs|pcl_ros"
+            r"|pcl_conversions|cv_bridge)[/.]|semantic_mht_slam/[A-Z]",
             {"ros", "perception", "programs"}, {"ros", "perception"}),
     "Ceres": (r"(ceres|glog)/", {"graph"}, set()),
     "FLANN": (r"flann/", {"place"}, set()),
     "OpenCV machine learning": (r"opencv2/ml", {"place"}, set()),
-    "OpenCV": (r"opencv2/(?!ml|core)", {"perception"}, {"perception"}),
+    "OpenCV": (r"opencv2/(?!ml|core)|opencv/", {"perception"}, {"perception"}),
     "OpenCV core": (r"opencv2/core", {"perception", "place"}, {"perception"}),
     "PCL sample consensus": (r"pcl/(sample_consensus|point_types|point_cloud)", {"perception", "place"}, {"perception"}),
     "PCL": (r"pcl/(?!sample_consensus|point_types|point_cloud)", {"perception"}, {"perception"}),
@@ -36,7 +37,8 @@ LIBRARIES = {
     "nlohmann-json": (r"nlohmann/", {"io", "app", "programs"}, set()),
     "Boost.Program_options": (r"boost/program_options", {"programs"}, set()),
 }
-INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+INCLUDE = re.compile(r'^\s*(?:/\*.*\*/\s*)?#\s*include\s*[<"]([^>"]+)[>"]')
+SUFFIXES = {".h", ".hh", ".hpp", ".hxx", ".c", ".cc", ".cpp", ".cxx", ".inl"}
 
 
 def module_of(path):
@@ -55,6 +57,8 @@ def violations(path):
         if not match:
             continue
         target = match.group(1)
+        if ".." in target.split("/"):
+            yield number, f"'{target}' goes through a parent folder"
         own = re.match(r"semantic_mht_slam/([a-z_]+)/", target)
         if own:
             other = own.group(1)
@@ -70,8 +74,12 @@ def violations(path):
 
 def main():
     found = 0
-    for path in sorted([*Path("include/semantic_mht_slam").rglob("*.h"), *Path("src").rglob("*.h"),
-                        *Path("src").rglob("*.cpp")]):
+    paths = sorted(path for folder in ("include/semantic_mht_slam", "src") for path in Path(folder).rglob("*")
+                   if path.suffix in SUFFIXES)
+    if not paths:
+        print("no source files: run this in the repository root")
+        return 1
+    for path in paths:
         for number, problem in violations(path):
             print(f"{path}:{number}: {problem}")
             found += 1

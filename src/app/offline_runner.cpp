@@ -15,9 +15,10 @@ double millisecondsSince(Clock::time_point begin) {
 
 }  // namespace
 
-RunResult runOffline(const Recording& recording, const SlamConfig& config, const ProgressCallback& progress) {
+RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
+                     const ProgressCallback& progress) {
   RunResult result;
-  Slam slam(config);
+  Slam slam(config, classes);
   const auto begin = Clock::now();
   auto frame = recording.detector_frames.begin();
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {
@@ -28,12 +29,17 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
       ++frame;
     }
     result.step_ms.push_back(millisecondsSince(step_begin));
+    result.hypotheses.push_back(static_cast<int>(slam.hypotheses().size()));
     progress(i + 1, recording.odometry.size());
   }
   for (; frame != recording.detector_frames.end(); ++frame) slam.addDetections(frame->stamp, frame->detections);
+  slam.finish();
   result.seconds = millisecondsSince(begin) / 1e3;
   result.trajectory = slam.trajectory();
   result.counters = slam.counters();
+  result.landmarks = slam.map().landmarks();
+  result.associations = slam.map().associations();
+  result.submaps = slam.map().submaps().size();
   if (result.trajectory.empty()) throw InputError("no odometry sample could be used");
   return result;
 }

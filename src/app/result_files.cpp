@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
 
@@ -36,6 +37,37 @@ Json summarizeTimes(std::vector<double> step_ms) {
           {"max", step_ms.back()}};
 }
 
+/// Mean, largest, and how often each number of hypotheses lived.
+Json summarizeHypotheses(const std::vector<int>& hypotheses) {
+  const double sum = std::accumulate(hypotheses.begin(), hypotheses.end(), 0.0);
+  std::map<int, int> frames_with;
+  for (const int count : hypotheses) ++frames_with[count];
+  Json histogram = Json::object();
+  for (const auto& [count, frames] : frames_with) histogram[std::to_string(count)] = frames;
+  return {{"mean", sum / static_cast<double>(hypotheses.size())},
+          {"max", *std::max_element(hypotheses.begin(), hypotheses.end())},
+          {"frames_with", histogram}};
+}
+
+std::string formatLandmarks(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes) {
+  std::string text = "id,class,x,y,z,existence,observations\n";
+  for (const MixtureLandmark& landmark : landmarks) {
+    text += std::to_string(landmark.id) + "," + classes[landmark.mostLikelyClass()].name;
+    for (int i = 0; i < 3; ++i) text += "," + formatFixed(landmark.position.mean_m[i], 4);
+    text += "," + formatFixed(landmark.existence_prob, 6) + "," + std::to_string(landmark.observations) + "\n";
+  }
+  return text;
+}
+
+std::string formatAssociations(const std::vector<DetectionAssociation>& associations) {
+  std::string text = "frame,row,landmark\n";
+  for (const auto& [frame, row, landmark] : associations) {
+    const std::string id = landmark == kNoLandmark ? "-1" : std::to_string(landmark);
+    text += std::to_string(frame) + "," + std::to_string(row) + "," + id + "\n";
+  }
+  return text;
+}
+
 double peakRssMb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -60,6 +92,7 @@ Json toJson(const InputCounters& counters) {
           {"frames", counters.frames},
           {"frames_before_odometry", counters.frames_before_odometry},
           {"frames_not_rising", counters.frames_not_rising},
+          {"frames_far_ahead", counters.frames_far_ahead},
           {"frames_in_odometry_gap", counters.frames_in_odometry_gap},
           {"frames_waiting_too_long", counters.frames_waiting_too_long},
           {"detections", counters.detections},
@@ -84,29 +117,29 @@ std::optional<TrajectoryError> scoreRun(const Recording& recording, const std::v
 }
 
 void writeResultFiles(const std::string& folder, const Recording& recording, const RunResult& result,
-                      const SystemConfig& config) {
+                      const SystemConfig& config, const ClassTable& classes) {
   std::vector<Pose> poses;
   for (const StampedPose& pose : result.trajectory) poses.push_back(inOutputFrame(recording, pose.T_world_base));
   writeFileAtomically(folder + "/trajectory.txt", formatKittiTrajectory(poses));
   writeFileAtomically(folder + "/trajectory.tum", formatTumTrajectory(result.trajectory));
   writeFileAtomically(folder + "/loop_closures.csv",
                       "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw\n");
-  writeFileAtomically(folder + "/landmarks.csv", "id,class,x,y,z,existence,observations\n");
-  writeFileAtomically(folder + "/associations.csv", "frame,row,landmark\n");
+  writeFileAtomically(folder + "/landmarks.csv", formatLandmarks(result.landmarks, classes));
+  writeFileAtomically(folder + "/associations.csv", formatAssociations(result.associations));
   writeFileAtomically(folder + "/config.yaml", toYaml(config));
 }
 
 void writeReport(const std::string& folder, const Recording& recording, const RunResult& result,
                  const SystemConfig& config, std::size_t map_bytes) {
-  Json report = {{"method", "odometry"},
-                 {"seed", config.seed},
+  Json report = {{"method", nameOf(config.slam.method)},
+                 {"seed", config.slam.seed},
                  {"frames", result.trajectory.size()},
                  {"seconds", result.seconds},
                  {"ms_per_frame", summarizeTimes(result.step_ms)},
                  {"peak_rss_mb", peakRssMb()},
-                 {"hypotheses", {{"mean", 0}, {"max", 0}}},
-                 {"landmarks", 0},
-                 {"submaps", 0},
+                 {"hypotheses", summarizeHypotheses(result.hypotheses)},
+                 {"landmarks", result.landmarks.size()},
+                 {"submaps", result.submaps},
                  {"loop_closures", 0},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};

@@ -11,6 +11,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The method that the settings choose, which decides the defaults of other keys. A wrong one is reported later, with
+/// all other problems.
+Method methodOf(const std::vector<Setting>& settings) {
+  SlamConfig config;
+  Fields fields;
+  describe(config, fields);
+  for (const Setting& setting : settings) {
+    if (setting.key == "method") fields.all().front().set(setting.value);
+  }
+  return config.method;
+}
+
 }  // namespace
 
 void describe(NodeConfig& config, Fields& fields) {
@@ -20,7 +32,7 @@ void describe(NodeConfig& config, Fields& fields) {
   fields.add("queue_size", config.queue_size, "messages", {1, 1000000},
              "Messages that may wait for the estimator; beyond that the oldest is dropped and counted.");
   fields.add("tf_timeout", config.tf_timeout_s, "s", {0.0, 60.0},
-             "How long the first frame of a sensor waits for the transform from the base frame.");
+             "How long objects wait for the transform of their sensor; odometry never waits for them.");
   fields.add("trajectory_period", config.trajectory_period_s, "s", {0.01, 60.0},
              "Wall time between publications of the trajectory.");
   fields.add("reset_after_jump_back", config.reset_after_jump_back_s, "s", {0.0, 3600.0},
@@ -28,7 +40,6 @@ void describe(NodeConfig& config, Fields& fields) {
 }
 
 void describe(SystemConfig& config, Fields& fields) {
-  fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
   fields.add("class_table", config.class_table, "Class table file; relative to this file or to the package's config.");
   describe(config.slam, fields);
   fields.group("node", config.node);
@@ -36,6 +47,7 @@ void describe(SystemConfig& config, Fields& fields) {
 
 SystemConfig makeSystemConfig(const std::vector<Setting>& settings) {
   SystemConfig config;
+  config.slam = defaultsOf(methodOf(settings));
   Fields fields;
   describe(config, fields);
   applySettings(settings, fields);
@@ -79,9 +91,33 @@ Setting parseOverride(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1), "--set"};
 }
 
-ClassTable loadClassTable(const SystemConfig& config, const std::string& folder) {
+std::string locateClassTable(const SystemConfig& config, const std::string& folder) {
   const fs::path beside = fs::path(folder) / config.class_table;
-  return readClassTable(fs::exists(beside) ? beside.string() : packageConfigFile(config.class_table));
+  std::error_code error;
+  if (fs::equivalent(beside, packageConfigFile(config.class_table), error) || !fs::exists(beside)) {
+    return config.class_table;
+  }
+  return fs::absolute(beside).lexically_normal().string();
+}
+
+ClassTable loadClassTable(const SystemConfig& config, const std::string& folder) {
+  const std::string located = locateClassTable(config, folder);
+  return readClassTable(fs::path(located).is_absolute() ? located : packageConfigFile(located));
+}
+
+void requireUsableFrames(const NodeConfig& config) {
+  std::vector<std::string> problems;
+  const std::vector<std::pair<std::string, std::string>> frames = {{"node.map_frame", config.map_frame},
+                                                                   {"node.odom_frame", config.odom_frame},
+                                                                   {"node.base_frame", config.base_frame}};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const auto& [key, name] = frames[i];
+    if (name.empty() || name.front() == '/') problems.push_back(key + " = '" + name + "' is no name of a tf frame");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (frames[j].second == name) problems.push_back(key + " and " + frames[j].first + " are both '" + name + "'");
+    }
+  }
+  if (!problems.empty()) throw ConfigError(problems);
 }
 
 std::string packageConfigFile(const std::string& name) {

@@ -25,6 +25,13 @@ std::optional<std::string> outside(double value, const Range& range) {
   return "is out of range (" + describeRange(range) + ")";
 }
 
+/// Single-quoted YAML scalar: a quote inside is doubled.
+std::string quotedYaml(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string groupOf(const std::string& key) {
   const std::size_t dot = key.rfind('.');
   return dot == std::string::npos ? "" : key.substr(0, dot);
@@ -141,7 +148,7 @@ std::string toYaml(const Fields& fields) {
     for (std::size_t i = common; i < path.size(); ++i) text += std::string(2 * i, ' ') + path[i] + ":\n";
     const std::string value = field.get();
     const bool quoted = field.type == "text";
-    text += std::string(2 * path.size(), ' ') + name + ": " + (quoted ? "'" + value + "'" : value) + "\n";
+    text += std::string(2 * path.size(), ' ') + name + ": " + (quoted ? quotedYaml(value) : value) + "\n";
     open = std::move(path);
   }
   return text;

@@ -23,6 +23,9 @@ Pose parseTransform(const std::string& where, std::string_view text) {
     }
     matrix.data()[i] = *value;
   }
+  const Eigen::Matrix3d rotation = matrix.leftCols<3>();
+  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (error > 0.01 || rotation.determinant() < 0.0) throw InputError(where + ": the 3x3 part of Tr: is no rotation");
   return Pose::fromMatrix(matrix);
 }
 

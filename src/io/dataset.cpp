@@ -13,10 +13,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `name` inside the folder if it is there, else `name` as it stands.
+std::string inside(const std::string& folder, const std::string& name) {
+  return (fs::path(folder) / name).string();
+}
+
+/// A file that the user named: inside the folder if it is there, else as it stands.
 std::string locate(const std::string& folder, const std::string& name) {
-  const std::string inside = (fs::path(folder) / name).string();
-  return fs::path(name).is_absolute() || (!fs::exists(inside) && fs::exists(name)) ? name : inside;
+  const std::string in_folder = inside(folder, name);
+  return fs::path(name).is_absolute() || (!fs::exists(in_folder) && fs::exists(name)) ? name : in_folder;
 }
 
 std::vector<Pose> readPoses(const std::string& path, const Pose& T_cam0_base, std::size_t frames) {
@@ -47,8 +51,8 @@ Pose toCamera(const Pose& T_world_base, const Pose& T_cam0_base) {
 Dataset readDataset(const DatasetFiles& files, const ClassTable& classes) {
   if (!fs::is_directory(files.folder)) throw InputError("no data-set folder '" + files.folder + "'");
   Dataset dataset;
-  dataset.stamps = readTimes(locate(files.folder, "times.txt"));
-  dataset.T_cam0_base = readCalibration(locate(files.folder, "calib.txt"));
+  dataset.stamps = readTimes(inside(files.folder, "times.txt"));
+  dataset.T_cam0_base = readCalibration(inside(files.folder, "calib.txt"));
   dataset.T_odom_base = readPoses(locate(files.folder, files.odometry), dataset.T_cam0_base, dataset.frames());
   dataset.detections = readObjects(locate(files.folder, files.objects), classes, dataset.frames());
   const std::string truth = (fs::path(files.folder) / "poses.txt").string();

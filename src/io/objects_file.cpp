@@ -38,15 +38,18 @@ Detection readDetection(const CsvRow& row, ClassIndex class_index) {
   Detection detection;
   detection.class_index = class_index;
   detection.position_m = {row.number(kX), row.number(kY), row.number(kZ)};
-  detection.score = row.optionalNumber(kScore);
+  const std::optional<double> score = row.optionalNumber(kScore);
+  if (score != -1.0) detection.score = score;  // unknown, as in messages
   if (const auto s = readGroup<6>(row, kCov)) {
     const auto& [xx, xy, xz, yy, yz, zz] = *s;
     Eigen::Matrix3d cov;
     cov << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-    detection.cov_m2 = cov;
+    if (!cov.isZero(0.0)) detection.cov_m2 = cov;
   }
-  if (const auto size = readGroup<3>(row, kSize))
-    detection.size_m = Eigen::Vector3d((*size)[0], (*size)[1], (*size)[2]);
+  if (const auto size = readGroup<3>(row, kSize)) {
+    const Eigen::Vector3d size_m((*size)[0], (*size)[1], (*size)[2]);
+    if (!size_m.isZero(0.0)) detection.size_m = size_m;
+  }
   return detection;
 }
 

@@ -54,6 +54,8 @@ std::string readFile(const std::string& path) {
 }
 
 void forEachLine(std::string_view content, const std::function<void(int, std::string_view)>& use) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (content.substr(0, kByteOrderMark.size()) == kByteOrderMark) content.remove_prefix(kByteOrderMark.size());
   int number = 0;
   while (!content.empty()) {
     const std::size_t end = std::min(content.find('\n'), content.size());
@@ -68,7 +70,18 @@ std::string at(const std::string& path, int line) {
   return path + ":" + std::to_string(line);
 }
 
+void requireReplaceable(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::symlink_status(path, error);
+  const bool is_taken =
+      status.type() != std::filesystem::file_type::not_found && status.type() != std::filesystem::file_type::none;
+  if (is_taken && !std::filesystem::is_regular_file(status)) {
+    throw InputError("cannot write '" + path + "': something else than a file is there");
+  }
+}
+
 void writeFileAtomically(const std::string& path, std::string_view content) {
+  requireReplaceable(path);
   const std::string temporary = path + ".tmp" + std::to_string(::getpid());
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) fail("cannot write", path);

@@ -29,11 +29,26 @@ std::array<double, N> readNumbers(const std::string& path, int line, std::string
   return numbers;
 }
 
+constexpr double kLatestSeconds = 4e9;  // ROS time ends at 2^32 s
+constexpr double kFurthest_m = 1e7;     // a quarter of the way round the Earth
+
+Stamp readStamp(const std::string& where, double seconds) {
+  if (!(seconds >= 0.0 && seconds <= kLatestSeconds)) {
+    throw InputError(where + ": time " + formatDouble(seconds) + " s is outside 0 to 4e9 s");
+  }
+  return stampFromSeconds(seconds);
+}
+
+void requireNear(const std::string& where, const Eigen::Vector3d& position_m) {
+  if (position_m.cwiseAbs().maxCoeff() > kFurthest_m) throw InputError(where + ": a position beyond 1e7 m");
+}
+
 Pose poseFromRow(const std::array<double, 12>& row, const std::string& where) {
   const Eigen::Matrix<double, 3, 4> matrix = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(row.data());
   const Eigen::Matrix3d rotation = matrix.leftCols<3>();
   const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (error > 0.01 || rotation.determinant() < 0.0) throw InputError(where + ": the 3x3 part is no rotation");
+  requireNear(where, matrix.col(3));
   return Pose::fromMatrix(matrix);
 }
 
@@ -85,7 +100,8 @@ std::vector<StampedPose> readTumTrajectory(const std::string& path) {
     const std::array<double, 8> row = readNumbers<8>(path, line, text);
     const Eigen::Quaterniond rotation(row[7], row[4], row[5], row[6]);
     if (std::abs(rotation.norm() - 1.0) > 0.01) throw InputError(at(path, line) + ": the quaternion has no unit norm");
-    const Stamp stamp = stampFromSeconds(row[0]);
+    const Stamp stamp = readStamp(at(path, line), row[0]);
+    requireNear(at(path, line), {row[1], row[2], row[3]});
     if (!trajectory.empty()) requireRising(at(path, line), trajectory.back().stamp, stamp);
     trajectory.push_back({stamp, normalized({rotation, {row[1], row[2], row[3]}})});
   });
@@ -106,8 +122,7 @@ std::string formatTumTrajectory(const std::vector<StampedPose>& trajectory) {
 std::vector<Stamp> readTimes(const std::string& path) {
   std::vector<Stamp> stamps;
   forEachLine(readFile(path), [&](int line, std::string_view text) {
-    const Stamp stamp = stampFromSeconds(readNumbers<1>(path, line, text)[0]);
-    if (stamp < 0) throw InputError(at(path, line) + ": a negative time");
+    const Stamp stamp = readStamp(at(path, line), readNumbers<1>(path, line, text)[0]);
     if (!stamps.empty()) requireRising(at(path, line), stamps.back(), stamp);
     stamps.push_back(stamp);
   });

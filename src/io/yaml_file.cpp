@@ -10,6 +10,8 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr int kMaxDepth = 20;
+
 std::string origin(const std::string& path, const YAML::Node& node) {
   return at(path, node.Mark().line + 1);
 }
@@ -17,19 +19,23 @@ std::string origin(const std::string& path, const YAML::Node& node) {
 YAML::Node load(const std::string& path) {
   const std::string content = readFile(path);
   try {
-    return YAML::Load(content);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(content);
+    if (documents.size() > 1) throw InputError(path + ": holds more than one YAML document");
+    return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& error) {
     throw InputError(at(path, error.mark.line + 1) + ": not YAML: " + error.msg);
   }
 }
 
-void flatten(const std::string& path, const YAML::Node& node, const std::string& prefix,
-             std::vector<Setting>& settings) {
+void flatten(const std::string& path, const YAML::Node& node, const std::string& prefix, std::vector<Setting>& settings,
+             int depth = 0) {
+  if (depth > kMaxDepth) throw InputError(path + ": '" + prefix + "' is nested too deeply, or in itself");
   if (!node.IsMap()) throw InputError(origin(path, node) + ": '" + prefix + "' should hold keys and values");
   for (const auto& item : node) {
-    const std::string key = (prefix.empty() ? "" : prefix + ".") + item.first.as<std::string>();
+    if (!item.first.IsScalar()) throw InputError(origin(path, item.first) + ": a key that is no text");
+    const std::string key = (prefix.empty() ? "" : prefix + ".") + item.first.Scalar();
     if (item.second.IsMap()) {
-      flatten(path, item.second, key, settings);
+      flatten(path, item.second, key, settings, depth + 1);
     } else if (item.second.IsScalar()) {
       settings.push_back({key, item.second.Scalar(), origin(path, item.second)});
     } else {

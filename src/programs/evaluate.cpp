@@ -21,6 +21,7 @@ constexpr const char* kUsage =
     "  association   detections' landmarks against the true ones\n"
     "  loops         loop closures, or scores of pairs of frames, against true poses\n"
     "  landmarks     mapped landmarks against true ones\n"
+    "  alignment     frames against an earlier map after drift, for growing offsets\n"
     "\n"
     "evaluate COMMAND --help tells the options of a command.\n";
 
@@ -30,7 +31,8 @@ const std::vector<Command>& commands() {
   static const std::vector<Command> list = {{"trajectory", evaluateTrajectory},
                                             {"association", evaluateAssociation},
                                             {"loops", evaluateLoops},
-                                            {"landmarks", evaluateLandmarks}};
+                                            {"landmarks", evaluateLandmarks},
+                                            {"alignment", evaluateAlignment}};
   return list;
 }
 

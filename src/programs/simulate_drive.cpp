@@ -8,7 +8,9 @@
 #include "semantic_mht_slam/app/simulated_dataset.h"
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/dataset.h"
+#include "semantic_mht_slam/io/staged_folder.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/simulation/simulator.h"
@@ -27,7 +29,7 @@ constexpr const char* kUsage =
 struct Arguments {
   std::string scenario = packageConfigFile("scenarios/town.yaml");
   std::vector<std::string> settings;
-  std::uint64_t seed = 1;
+  std::string seed = "1";
   std::string output;
 };
 
@@ -52,18 +54,26 @@ Scenario loadScenario(const Arguments& arguments) {
   return scenario;
 }
 
+std::uint64_t seedOf(const Arguments& arguments) {
+  const auto seed = parseInteger(arguments.seed);
+  if (!seed || *seed < 0) throw InputError("--seed " + arguments.seed + ": a whole number of at least 0 was expected");
+  return static_cast<std::uint64_t>(*seed);
+}
+
 int run(int argc, char** argv) {
   Arguments arguments;
   if (!parseOrHelp({argv + 1, argv + argc}, kUsage, makeOptions(arguments))) return 0;
   if (arguments.output.empty()) throw InputError("--output is needed");
 
   const ClassTable classes = readClassTable(packageConfigFile("classes_semantic_kitti.yaml"));
-  const SimulatedDrive drive = simulateDrive(loadScenario(arguments), classes, arguments.seed);
-  writeSimulatedDataset(drive, classes, arguments.output);
+  const SimulatedDrive drive = simulateDrive(loadScenario(arguments), classes, seedOf(arguments));
+  StagedFolder output(arguments.output);
+  writeSimulatedDataset(drive, classes, output.staging());
   // The bag is made from the files, so that both hold the same digits.
-  const DatasetFiles files{arguments.output, "objects.csv", "odometry/odometry.txt"};
-  writeBag(arguments.output + "/drive.bag", toRecording(readDataset(files, classes)), classes, NodeConfig{},
+  const DatasetFiles files{output.staging(), "objects.csv", "odometry/odometry.txt"};
+  writeBag(output.staging() + "/drive.bag", toRecording(readDataset(files, classes)), classes, NodeConfig{},
            BagLayout{}, stampFromSeconds(1.0));
+  output.commit();
 
   std::size_t objects = 0;
   for (const Detections& detections : drive.detections) objects += detections.size();

@@ -27,7 +27,9 @@ int run(int argc, char** argv) {
     }
   }
   ros::init(argc, argv, "slam_node");
-  const SystemConfig config = makeSystemConfig(readParameters(ros::NodeHandle("~")));
+  const ros::NodeHandle private_handle("~");  // the last handle that goes shuts logging down
+  const SystemConfig config = makeSystemConfig(readParameters(private_handle));
+  requireUsableFrames(config.node);
   const ClassTable classes = loadClassTable(config, "");
   const SlamNode node(ros::NodeHandle(), config, classes);
   ros::spin();

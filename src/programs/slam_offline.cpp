@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -11,7 +12,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/dataset.h"
-#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/staged_folder.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 
 #include "program.h"
@@ -70,8 +71,12 @@ Recording loadRecording(const Arguments& arguments, const ClassTable& classes, c
 void printSummary(const Recording& recording, const RunResult& result, const std::string& output) {
   std::printf("%zu frames in %.2f s", result.trajectory.size(), result.seconds);
   if (const auto error = scoreRun(recording, result.trajectory)) {
-    std::printf("; error: SE3-aligned %.3f m, running %.3f +- %.3f m, t_rel %.3f %%", error->se3_m,
-                error->running_mean_m, error->running_std_m, error->t_rel_percent);
+    std::printf("; error: SE3-aligned %.3f m, running %.3f +- %.3f m", error->se3_m, error->running_mean_m,
+                error->running_std_m);
+    if (std::isfinite(error->t_rel_percent)) std::printf(", t_rel %.3f %%", error->t_rel_percent);
+  }
+  if (const std::size_t unusable = result.counters.detections_invalid) {
+    std::printf("; %zu detections dropped, their numbers cannot be used", unusable);
   }
   std::printf("; results in %s\n", output.c_str());
 }
@@ -83,18 +88,21 @@ int run(int argc, char** argv) {
     throw InputError("one of --dataset and --bag is needed");
   if (arguments.output.empty()) throw InputError("--output is needed");
 
-  const SystemConfig config = loadConfig(arguments);
+  SystemConfig config = loadConfig(arguments);
+  requireUsableFrames(config.node);
   const std::string config_folder = std::filesystem::path(arguments.config).parent_path().string();
+  config.class_table = locateClassTable(config, config_folder);
   const ClassTable classes = loadClassTable(config, config_folder);
   const Recording recording = loadRecording(arguments, classes, config);
-  prepareOutputFolder(arguments.output);
+  StagedFolder output(arguments.output);
 
   Progress progress("frames");
   const RunResult result =
-      runOffline(recording, config.slam, [&](std::size_t done, std::size_t all) { progress(done, all); });
-  writeResultFiles(arguments.output, recording, result, config);
-  const std::size_t map_bytes = writeMapFile(arguments.output + "/map.bag", result.trajectory, classes, config.node);
-  writeReport(arguments.output, recording, result, config, map_bytes);
+      runOffline(recording, config.slam, classes, [&](std::size_t done, std::size_t all) { progress(done, all); });
+  writeResultFiles(output.staging(), recording, result, config, classes);
+  const std::size_t map_bytes = writeMapFile(output.staging() + "/map.bag", result.trajectory, classes, config.node);
+  writeReport(output.staging(), recording, result, config, map_bytes);
+  output.commit();
   printSummary(recording, result, arguments.output);
   return 0;
 }

@@ -129,7 +129,8 @@ class BagReader {
 
 Recording readBag(const std::string& path, const ClassTable& classes, const NodeConfig& frames,
                   const BagLayout& layout) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError("cannot read '" + path + "': no such file");
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError("cannot read '" + path + "': no such file, or no regular one");
   return BagReader(path, classes, frames, layout).read();
 }
 

@@ -3,18 +3,23 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <memory>
 
 #include <boost/make_shared.hpp>
 #include <rosbag/bag.h>
 #include <std_msgs/Time.h>
 #include <tf2_msgs/TFMessage.h>
+#include <unistd.h>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+constexpr Stamp kLastRosStamp = 4294967295LL * 1000000000LL;
 
 /// Tells players to latch the topic.
 boost::shared_ptr<ros::M_string> latchedHeader() {
@@ -41,14 +46,20 @@ std::vector<StampedPose> shifted(std::vector<StampedPose> trajectory, Stamp time
 
 /// Lets `fill` write a bag beside `path`, then renames it.
 void writeBagAtomically(const std::string& path, const std::function<void(rosbag::Bag&)>& fill) {
-  const std::string temporary = path + ".tmp";
+  requireReplaceable(path);
+  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
+  // The destructor of a bag that could not be written throws, which would end the program: such a bag is given up
+  // instead of destroyed.
+  auto bag = std::make_unique<rosbag::Bag>();
   try {
-    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
-    fill(bag);
-    bag.close();
-  } catch (const rosbag::BagException& error) {
+    bag->open(temporary, rosbag::bagmode::Write);
+    fill(*bag);
+    bag->close();
+  } catch (const std::exception& error) {
+    const std::string reason = error.what();
+    static_cast<void>(bag.release());
     std::remove(temporary.c_str());
-    throw InputError("cannot write '" + path + "': " + error.what());
+    throw InputError("cannot write '" + path + "': " + reason);
   }
   if (std::rename(temporary.c_str(), path.c_str()) != 0) {
     const std::string reason = std::strerror(errno);
@@ -81,6 +92,9 @@ void writeHead(rosbag::Bag& bag, const Recording& recording, const NodeConfig& f
 void writeBag(const std::string& path, const Recording& recording, const ClassTable& classes, const NodeConfig& frames,
               const BagLayout& layout, Stamp time_origin) {
   if (recording.odometry.empty()) throw InputError("cannot write '" + path + "': no odometry");
+  if (recording.odometry.back().stamp > kLastRosStamp - time_origin) {
+    throw InputError("cannot write '" + path + "': stamps go beyond the end of ROS time, 2106");
+  }
   writeBagAtomically(path, [&](rosbag::Bag& bag) {
     writeHead(bag, recording, frames, layout, recording.odometry.front().stamp + time_origin, time_origin);
     auto frame = recording.detector_frames.begin();

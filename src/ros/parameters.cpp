@@ -27,7 +27,7 @@ void flatten(XmlRpc::XmlRpcValue& value, const std::string& key, const std::stri
       settings.push_back({key, static_cast<std::string>(value), origin});
       return;
     default:
-      throw InputError("parameter " + origin + "/" + key + " is no number, text or true/false");
+      throw InputError(origin + "/" + key + " is no number, text or true/false");
   }
 }
 

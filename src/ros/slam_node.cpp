@@ -1,5 +1,9 @@
 #include "semantic_mht_slam/ros/slam_node.h"
 
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -23,7 +27,8 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const SystemConfig& config, co
       pose_publisher_(handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", 100)),
       trajectory_publisher_(handle_.advertise<nav_msgs::Path>("trajectory", 1, true)),
       objects_publisher_(handle_.advertise<visualization_msgs::MarkerArray>("markers/objects", 10, true)),
-      slam_(std::make_unique<Slam>(config.slam)),
+      slam_(std::make_unique<Slam>(config.slam, classes)),
+      jump_(stampFromSeconds(config.node.reset_after_jump_back_s)),
       queue_(static_cast<std::size_t>(config.node.queue_size)) {
   odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry>(
       "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { queue_.push(message); });
@@ -52,40 +57,77 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
   if (!isExpectedFrame(message)) return;
   const Stamp stamp = toStamp(message.header.stamp);
   const std::lock_guard<std::mutex> lock(slam_mutex_);
-  startAgainAfterJumpBack(stamp);
-  if (!slam_->addOdometry({stamp, fromMessage(message.pose.pose)})) return;
+  if (jump_.isUnconfirmed(stamp, latestStamp())) return jump_.hold(message);
+  if (const auto jumped = jump_.takeConfirmed(stamp, latestStamp())) {
+    if (toStamp(jumped->header.stamp) < *latestStamp()) startAgain(stamp);
+    process(*jumped);
+  }
+  process(message);
+  retryObjects();
+}
+
+void SlamNode::process(const nav_msgs::Odometry& message) {
+  if (!slam_->addOdometry({toStamp(message.header.stamp), fromMessage(message.pose.pose)})) return;
   publishPose();
   publishObjects();
 }
 
-bool SlamNode::isExpectedFrame(const nav_msgs::Odometry& message) const {
+std::optional<Stamp> SlamNode::latestStamp() const {
+  const std::optional<StampedPose> latest = slam_->latestPose();
+  return latest ? std::optional(latest->stamp) : std::nullopt;
+}
+
+bool SlamNode::isExpectedFrame(const nav_msgs::Odometry& message) {
   const NodeConfig& node = config_.node;
   if (message.header.frame_id == node.odom_frame && message.child_frame_id == node.base_frame) return true;
-  ROS_WARN_THROTTLE(kWarningPeriod_s,
-                    "%s: odometry from '%s' to '%s' is ignored, expected is '%s' to '%s': set node/odom_frame and "
-                    "node/base_frame",
-                    odometry_subscriber_.getTopic().c_str(), message.header.frame_id.c_str(),
-                    message.child_frame_id.c_str(), node.odom_frame.c_str(), node.base_frame.c_str());
+  warn(odometry_subscriber_.getTopic() + ": odometry from '" + message.header.frame_id + "' to '" +
+       message.child_frame_id + "' is ignored, expected is '" + node.odom_frame + "' to '" + node.base_frame +
+       "': set node/odom_frame and node/base_frame");
   return false;
 }
 
-void SlamNode::startAgainAfterJumpBack(Stamp stamp) {
-  const std::optional<StampedPose> latest = slam_->latestPose();
-  if (!latest || stamp >= latest->stamp - stampFromSeconds(config_.node.reset_after_jump_back_s)) return;
-  ROS_WARN("time jumped back from %.3f s to %.3f s: starting a new map", secondsFromStamp(latest->stamp),
+void SlamNode::warn(const std::string& text) {
+  // By wall time: a clock that stands still is one of the things to warn about. Counts in a text do not make it new.
+  std::string kind;
+  std::copy_if(text.begin(), text.end(), std::back_inserter(kind),
+               [](unsigned char c) { return std::isdigit(c) == 0; });
+  ros::WallTime& last = last_warning_[kind];
+  const ros::WallTime now = ros::WallTime::now();
+  if (now - last < ros::WallDuration(kWarningPeriod_s)) return;
+  last = now;
+  ROS_WARN_STREAM(text);
+}
+
+void SlamNode::startAgain(Stamp stamp) {
+  ROS_WARN("time jumped back from %.3f s to %.3f s: starting a new map", secondsFromStamp(*latestStamp()),
            secondsFromStamp(stamp));
-  slam_ = std::make_unique<Slam>(config_.slam);
+  slam_ = std::make_unique<Slam>(config_.slam, classes_);
   published_odometry_ = 0;
   published_frame_.reset();
 }
 
 void SlamNode::handle(const SemanticObjectArray& message) {
-  const std::optional<Pose> T_base_sensor = findSensor(message.header.frame_id);
-  if (!T_base_sensor) return;
-  Detections detections = fromMessage(message, classes_, *T_base_sensor, unknown_classes_);
   const std::lock_guard<std::mutex> lock(slam_mutex_);
-  slam_->addDetections(toStamp(message.header.stamp), std::move(detections));
-  publishObjects();
+  waiting_objects_.push_back({message, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});
+  if (!jump_.isHolding()) retryObjects();
+}
+
+void SlamNode::retryObjects() {
+  // Objects wait for the transform of their sensor, in their order, and nothing waits for them.
+  while (!waiting_objects_.empty()) {
+    const auto& [message, deadline] = waiting_objects_.front();
+    const std::optional<Pose> T_base_sensor = findSensor(message.header.frame_id);
+    if (!T_base_sensor && ros::WallTime::now() < deadline) return;
+    if (T_base_sensor) {
+      slam_->addDetections(toStamp(message.header.stamp),
+                           fromMessage(message, classes_, *T_base_sensor, unknown_classes_));
+      publishObjects();
+    } else {
+      ++without_transform_;
+      unconnected_frame_ = message.header.frame_id;
+    }
+    waiting_objects_.pop_front();
+  }
 }
 
 void SlamNode::publishObjects() {
@@ -96,23 +138,13 @@ void SlamNode::publishObjects() {
 }
 
 std::optional<Pose> SlamNode::findSensor(const std::string& sensor_frame) {
-  const std::string& base_frame = config_.node.base_frame;
   const auto known = T_base_sensor_.find(sensor_frame);
-  const bool is_first = known == T_base_sensor_.end();
-  if (!is_first && known->second) return known->second;
-  // Sensors are fixed to the base. Their transform may arrive after their first message; waiting once is enough.
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(is_first ? config_.node.tf_timeout_s : 0.0);
-  while (!transforms_.canTransform(base_frame, sensor_frame, ros::Time(0)) && ros::WallTime::now() < deadline) {
-    ros::WallDuration(0.01).sleep();
-  }
-  std::optional<Pose>& T_base_sensor = T_base_sensor_[sensor_frame];
-  try {
-    T_base_sensor = fromMessage(transforms_.lookupTransform(base_frame, sensor_frame, ros::Time(0)).transform);
-  } catch (const tf2::TransformException& error) {
-    ROS_WARN_THROTTLE(kWarningPeriod_s, "%s: objects in frame '%s' are dropped, no transform to '%s': %s",
-                      objects_subscriber_.getTopic().c_str(), sensor_frame.c_str(), base_frame.c_str(), error.what());
-  }
-  return T_base_sensor;
+  if (known != T_base_sensor_.end()) return known->second;
+  // Sensors are fixed to the base, so one look-up is enough.
+  const std::string& base_frame = config_.node.base_frame;
+  if (!transforms_.canTransform(base_frame, sensor_frame, ros::Time(0))) return std::nullopt;
+  const auto transform = transforms_.lookupTransform(base_frame, sensor_frame, ros::Time(0));
+  return T_base_sensor_.emplace(sensor_frame, fromMessage(transform.transform)).first->second;
 }
 
 void SlamNode::publishPose() {
@@ -140,29 +172,25 @@ void SlamNode::publishTrajectory(const ros::WallTimerEvent&) {
 
 void SlamNode::reportProblems() {
   const InputCounters& counters = slam_->counters();
-  if (const std::size_t dropped = queue_.dropped()) {
-    ROS_WARN_THROTTLE(kWarningPeriod_s, "the estimator is too slow: %zu messages dropped so far (node/queue_size)",
-                      dropped);
-  }
-  if (unknown_classes_ > 0) {
-    ROS_WARN_THROTTLE(kWarningPeriod_s, "%s: %zu objects with a class id that the class table lacks so far",
-                      objects_subscriber_.getTopic().c_str(), unknown_classes_);
-  }
-  const std::size_t bad_odometry = counters.odometry_invalid + counters.odometry_not_rising;
-  if (bad_odometry > 0) {
-    ROS_WARN_THROTTLE(kWarningPeriod_s, "%s: dropped so far: %zu not finite, %zu with a stamp that does not rise",
-                      odometry_subscriber_.getTopic().c_str(), counters.odometry_invalid, counters.odometry_not_rising);
-  }
-  const std::size_t bad_frames = counters.frames_before_odometry + counters.frames_not_rising +
-                                 counters.frames_in_odometry_gap + counters.frames_waiting_too_long;
-  if (bad_frames + counters.detections_invalid > 0) {
-    ROS_WARN_THROTTLE(
-        kWarningPeriod_s,
-        "%s: frames dropped so far: %zu older than the odometry, %zu with a stamp that does not rise, %zu "
-        "in a gap of the odometry, %zu waited too long for odometry; %zu objects with unusable numbers",
-        objects_subscriber_.getTopic().c_str(), counters.frames_before_odometry, counters.frames_not_rising,
-        counters.frames_in_odometry_gap, counters.frames_waiting_too_long, counters.detections_invalid);
-  }
+  const std::string odometry = odometry_subscriber_.getTopic() + ": ";
+  const std::string objects = objects_subscriber_.getTopic() + ": ";
+  const auto report = [this](std::size_t count, const std::string& topic, const std::string& problem) {
+    if (count > 0) warn(topic + std::to_string(count) + " " + problem);
+  };
+  report(queue_.dropped(), "", "messages dropped so far, the estimator is too slow (node/queue_size)");
+  report(counters.odometry_invalid, odometry, "messages dropped so far: not finite, or a quaternion without unit norm");
+  report(counters.odometry_not_rising, odometry, "messages dropped so far: the stamp does not rise");
+  report(
+      without_transform_, objects,
+      "messages dropped so far: no transform from '" + unconnected_frame_ + "' to '" + config_.node.base_frame + "'");
+  report(unknown_classes_, objects, "objects dropped so far: their class id is not in the class table");
+  report(counters.detections_invalid, objects,
+         "objects dropped so far: position, covariance, score or size is unusable");
+  report(counters.frames_before_odometry, objects, "messages dropped so far: older than the odometry");
+  report(counters.frames_not_rising, objects, "messages dropped so far: the stamp does not rise");
+  report(counters.frames_far_ahead, objects, "messages dropped so far: the stamp is far ahead of the odometry");
+  report(counters.frames_in_odometry_gap, objects, "messages dropped so far: in a gap of the odometry");
+  report(counters.frames_waiting_too_long, objects, "messages dropped so far: waited too long for odometry");
 }
 
 }  // namespace semantic_mht_slam

@@ -55,6 +55,10 @@ void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
     ++counters_.frames_not_rising;
     return;
   }
+  if (!odometry_.empty() && stamp > odometry_.back().stamp + stampFromSeconds(config_.odometry_history_s)) {
+    ++counters_.frames_far_ahead;  // and must not make the frames that follow look late
+    return;
+  }
   last_frame_ = stamp;
   const auto unusable =
       std::remove_if(detections.begin(), detections.end(), [](const Detection& d) { return !isUsable(d); });

@@ -17,8 +17,8 @@
 namespace semantic_mht_slam {
 namespace {
 
-RunResult run(const Recording& recording) {
-  return runOffline(recording, SlamConfig{}, [](std::size_t, std::size_t) {});
+RunResult run(const Recording& recording, const ClassTable& classes = makeTwoClasses()) {
+  return runOffline(recording, SlamConfig{}, classes, [](std::size_t, std::size_t) {});
 }
 
 TEST(OfflineRunnerTest, EveryFrameAndDetectionGoesThroughOnce) {
@@ -26,10 +26,11 @@ TEST(OfflineRunnerTest, EveryFrameAndDetectionGoesThroughOnce) {
   std::size_t detections = 0;
   for (const DetectorFrame& frame : recording.detector_frames) detections += frame.detections.size();
   std::size_t calls = 0;
-  const RunResult result = runOffline(recording, SlamConfig{}, [&](std::size_t done, std::size_t all) {
-    EXPECT_EQ(done, ++calls);
-    EXPECT_EQ(all, 41U);
-  });
+  const RunResult result =
+      runOffline(recording, SlamConfig{}, makeTwoClasses(), [&](std::size_t done, std::size_t all) {
+        EXPECT_EQ(done, ++calls);
+        EXPECT_EQ(all, 41U);
+      });
   EXPECT_EQ(calls, 41U);
   EXPECT_EQ(result.trajectory.size(), 41U);
   EXPECT_EQ(result.step_ms.size(), 41U);
@@ -58,7 +59,7 @@ TEST(OfflineRunnerTest, ResultsHaveTheRowsAndTheFrameOfTheOdometryFile) {
   const Recording recording = makeCircleRecording(30);
   const TemporaryFolder folder;
   const RunResult result = run(recording);
-  writeResultFiles(folder.path(), recording, result, SystemConfig{});
+  writeResultFiles(folder.path(), recording, result, SystemConfig{}, makeTwoClasses());
   const std::vector<Pose> in_camera = readKittiTrajectory(folder / "trajectory.txt");
   ASSERT_EQ(in_camera.size(), 30U);
   for (std::size_t i = 0; i < in_camera.size(); ++i) {
@@ -85,7 +86,7 @@ TEST_P(KittiOdometryTest, ErrorsAgreeWithThePublishedTable) {
   const ClassTable classes = readClassTable(packageConfigFile("classes_semantic_kitti.yaml"));
   const Recording recording =
       toRecording(readDataset({*folder, objects, std::string("odometry/") + GetParam().odometry + ".txt"}, classes));
-  const auto error = scoreRun(recording, run(recording).trajectory);
+  const auto error = scoreRun(recording, run(recording, classes).trajectory);
   ASSERT_TRUE(error);
   EXPECT_NEAR(error->running_mean_m, GetParam().running_m, 0.0051);
   EXPECT_NEAR(error->se3_m, GetParam().se3_m, 0.0051);

@@ -22,9 +22,9 @@ TEST(SystemConfigTest, ShippedConfigurationLoadsAndItsClassTableIsFound) {
 
 TEST(SystemConfigTest, EffectiveConfigurationReadsBackAsItself) {
   SystemConfig config;
-  config.seed = 42;
+  config.slam.seed = 42;
   config.slam.input.max_odometry_gap_s = 0.125;
-  config.node.map_frame = "world";
+  config.node.map_frame = "the world's";
   const TemporaryFolder folder;
   writeFileAtomically(folder / "config.yaml", toYaml(config));
   EXPECT_EQ(toYaml(loadSystemConfig(folder / "config.yaml", {})), toYaml(config));
@@ -32,7 +32,7 @@ TEST(SystemConfigTest, EffectiveConfigurationReadsBackAsItself) {
 
 TEST(SystemConfigTest, OverridesWinOverTheFileAndBadOnesAreRefused) {
   const std::string path = packageConfigFile("kitti.yaml");
-  EXPECT_EQ(loadSystemConfig(path, {parseOverride("seed=7")}).seed, 7U);
+  EXPECT_EQ(loadSystemConfig(path, {parseOverride("seed=7")}).slam.seed, 7U);
   expectInputError([&] { loadSystemConfig(path, {parseOverride("sead=7")}); },
                    {"--set", "unknown key 'sead'", "'seed'"});
   expectInputError([&] { loadSystemConfig(path, {parseOverride("input.odometry_history=-1")}); }, {"out of range"});

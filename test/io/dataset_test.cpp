@@ -78,6 +78,8 @@ TEST_F(DatasetTest, MissingFilesAndOtherRowCountsAreNamed) {
   expectInputError([&] { read(); }, {"poses.txt", "1 poses"});
   writeFileAtomically(folder_ / "calib.txt", "P0: 1 2 3\n");
   expectInputError([&] { read(); }, {"calib.txt", "Tr:"});
+  writeFileAtomically(folder_ / "calib.txt", "Tr: 5 0 0 0 0 1 0 0 0 0 1 0\n");
+  expectInputError([&] { read(); }, {"calib.txt:1", "no rotation"});
   writeFileAtomically(folder_ / "calib.txt", "Tr: 1 2 3\n");
   expectInputError([&] { read(); }, {"calib.txt:1", "3 numbers"});
   std::filesystem::remove(folder_ / "times.txt");

@@ -77,6 +77,10 @@ TEST_F(TrajectoryFileTest, BadRowsAreNamedByFileAndLine) {
   expectInputError([&] { readTumTrajectory(path_); }, {"poses.txt:2", "does not come after"});
   write("1.0 0 0 0 0 0 0 2\n");
   expectInputError([&] { readTumTrajectory(path_); }, {"poses.txt:1", "unit norm"});
+  write("1 0 0 1e308 0 1 0 0 0 0 1 0\n");
+  expectInputError([&] { readKittiTrajectory(path_); }, {"poses.txt:1", "beyond"});
+  write("0.0\n5e9\n");
+  expectInputError([&] { readTimes(path_); }, {"poses.txt:2", "outside 0 to 4e9"});
   write("0.0\n0.1\n0.05\n");
   expectInputError([&] { readTimes(path_); }, {"poses.txt:3", "does not come after"});
 }

@@ -35,6 +35,9 @@ TEST_F(YamlFileTest, WhatIsNoMapOfScalarsIsRefused) {
   expectInputError([&] { readSettings(write("- 1\n")); }, {"a.yaml:1"});
   expectInputError([&] { readSettings(write("a: 1\nb: {\n")); }, {"a.yaml:", "not YAML"});
   expectInputError([&] { readSettings(write("a: 1\na: 2\n")); }, {"a.yaml:2", "'a' stands twice"});
+  expectInputError([&] { readSettings(write("a: &x\n  b: *x\n")); }, {"a.yaml", "nested"});
+  expectInputError([&] { readSettings(write("{a: b}: 1\n")); }, {"a.yaml:1", "key"});
+  expectInputError([&] { readSettings(write("a: 1\n---\nb: 2\n")); }, {"a.yaml", "more than one"});
   expectInputError([&] { readSettings(folder_ / "none.yaml"); }, {"none.yaml"});
 }
 

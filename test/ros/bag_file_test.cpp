@@ -150,8 +150,8 @@ TEST_F(BagFileTest, BagOfAKittiSequenceGivesTheSameBytesAsItsFolder) {
   const Recording from_bag = readBag(path_, classes, {}, {});
   for (const auto& [recording, name] : {std::pair(&from_folder, "folder"), std::pair(&from_bag, "bag")}) {
     prepareOutputFolder(folder_ / name);
-    const RunResult result = runOffline(*recording, SlamConfig{}, [](std::size_t, std::size_t) {});
-    writeResultFiles(folder_ / name, *recording, result, SystemConfig{});
+    const RunResult result = runOffline(*recording, SlamConfig{}, classes, [](std::size_t, std::size_t) {});
+    writeResultFiles(folder_ / name, *recording, result, SystemConfig{}, classes);
   }
   for (const char* file : {"trajectory.txt", "trajectory.tum", "associations.csv", "landmarks.csv", "config.yaml"}) {
     EXPECT_EQ(readFile(folder_ / "bag" + "/" + file), readFile(folder_ / "folder" + "/" + file)) << file;

@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <mutex>
 #include <set>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
+#include <rosgraph_msgs/Log.h>
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -29,12 +31,32 @@ constexpr Stamp kOrigin = 1000000000;
 class SlamNodeTest : public ::testing::Test {
  protected:
   SlamNodeTest() : transform_listener_(transforms_) {
+    subscribers_.push_back(
+        handle_.subscribe<rosgraph_msgs::Log>("/rosout", 100, [this](const rosgraph_msgs::LogConstPtr& m) {
+          const std::lock_guard<std::mutex> lock(warnings_mutex_);
+          if (m->level >= rosgraph_msgs::Log::WARN) warnings_.push_back(m->msg);
+        }));
     subscribers_.push_back(handle_.subscribe<nav_msgs::Path>(
         "trajectory", 10, [this](const nav_msgs::PathConstPtr& m) { trajectory_ = *m; }));
     subscribers_.push_back(handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
         "pose", 1000, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& m) { poses_.push_back(*m); }));
     subscribers_.push_back(handle_.subscribe<visualization_msgs::MarkerArray>(
         "markers/objects", 1000, [this](const visualization_msgs::MarkerArrayConstPtr& m) { markers_.push_back(*m); }));
+  }
+
+  /// Waits until a warning with this text is on /rosout.
+  bool sawWarning(const std::string& text) const {
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10.0);
+    while (ros::WallTime::now() < deadline) {
+      {
+        const std::lock_guard<std::mutex> lock(warnings_mutex_);
+        for (const std::string& warning : warnings_) {
+          if (warning.find(text) != std::string::npos) return true;
+        }
+      }
+      ros::WallDuration(0.05).sleep();
+    }
+    return false;
   }
 
   /// Plays a bag at ten times real time and waits until the trajectory ends at `last`.
@@ -52,7 +74,7 @@ class SlamNodeTest : public ::testing::Test {
 
   /// The trajectory of the offline runner on the same bag, stamps of the bag.
   static std::vector<StampedPose> offlineTrajectory(const std::string& bag, const ClassTable& classes) {
-    return runOffline(readBag(bag, classes, {}, {}), SlamConfig{}, [](std::size_t, std::size_t) {}).trajectory;
+    return runOffline(readBag(bag, classes, {}, {}), SlamConfig{}, classes, [](std::size_t, std::size_t) {}).trajectory;
   }
 
   void expectTrajectory(const std::vector<StampedPose>& expected) const {
@@ -72,6 +94,8 @@ class SlamNodeTest : public ::testing::Test {
   nav_msgs::Path trajectory_;
   std::vector<geometry_msgs::PoseWithCovarianceStamped> poses_;
   std::vector<visualization_msgs::MarkerArray> markers_;
+  mutable std::mutex warnings_mutex_;
+  std::vector<std::string> warnings_;
 };
 
 TEST_F(SlamNodeTest, ReplayedBagGivesTheOfflineTrajectoryAndALaterOneStartsAgain) {
@@ -110,6 +134,32 @@ TEST_F(SlamNodeTest, ReplayedBagGivesTheOfflineTrajectoryAndALaterOneStartsAgain
   play(bag, last);
   expectTrajectory(expected);
   EXPECT_EQ(poses_.size(), kFrames);
+}
+
+TEST_F(SlamNodeTest, WrongInputIsNamedInAWarningAndOneWrongStampChangesNothing) {
+  ros::Publisher odometry = handle_.advertise<nav_msgs::Odometry>("odometry", 100);
+  ros::Publisher objects = handle_.advertise<SemanticObjectArray>("objects", 100);
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10.0);
+  while ((odometry.getNumSubscribers() == 0 || objects.getNumSubscribers() == 0) && ros::WallTime::now() < deadline) {
+    ros::WallDuration(0.05).sleep();
+  }
+  const Stamp begin = 50 * kOrigin;
+  const auto publish = [&](Stamp stamp, const std::string& frame) {
+    odometry.publish(toOdometry({stamp, Pose::identity()}, frame, "base_link"));
+  };
+  publish(begin, "odom");
+  publish(begin + kOrigin / 10, "camera_init");
+  EXPECT_TRUE(sawWarning("'camera_init'"));
+  objects.publish(toMessage(begin, "nowhere", {}, makeTwoClasses()));
+  for (int i = 1; i <= 40; ++i) {
+    publish(begin + i * kOrigin / 10, "odom");
+    if (i == 20) publish(1, "odom");  // falls back to the beginning, once
+    ros::WallDuration(0.1).sleep();
+  }
+  EXPECT_TRUE(sawWarning("'nowhere'")) << "objects of a frame that tf does not know";
+  ros::WallDuration(0.5).sleep();
+  EXPECT_EQ(toStamp(trajectory_.header.stamp), begin + 4 * kOrigin);
+  EXPECT_GE(trajectory_.poses.size(), 41U);
 }
 
 /// Runs a second node with one wrong parameter and returns its exit code.

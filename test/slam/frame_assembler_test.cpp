@@ -139,6 +139,15 @@ TEST(FrameAssemblerTest, LateDetectionsFindTheirOdometryAsLongAsItIsKept) {
   EXPECT_EQ(assembler.counters().frames_before_odometry, 1U);
 }
 
+TEST(FrameAssemblerTest, OneFrameFarAheadDoesNotMakeTheOthersLate) {
+  FrameAssembler assembler({});
+  assembler.addOdometry(odometryAt(1.0));
+  assembler.addDetections(stampFromSeconds(4e9), {});
+  assembler.addDetections(stampFromSeconds(1.0), {});
+  EXPECT_EQ(takeAll(assembler).size(), 1U);
+  EXPECT_EQ(assembler.counters().frames_far_ahead, 1U);
+}
+
 TEST(FrameAssemblerTest, FramesThatWaitForeverAreBounded) {
   FrameAssemblerConfig config;
   config.max_waiting_frames = 10;

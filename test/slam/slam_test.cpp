@@ -12,7 +12,7 @@ StampedPose odometryAt(int i) {
 }
 
 TEST(SlamTest, OdometryMethodPassesEveryUsableSampleThrough) {
-  Slam slam({});
+  Slam slam(defaultsOf(Method::kOdometry), ClassTable{});
   EXPECT_FALSE(slam.latestPose());
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(slam.addOdometry(odometryAt(i)));
   StampedPose broken = odometryAt(6);
@@ -29,7 +29,7 @@ TEST(SlamTest, OdometryMethodPassesEveryUsableSampleThrough) {
 }
 
 TEST(SlamTest, LatestFrameFollowsTheDetections) {
-  Slam slam({});
+  Slam slam(defaultsOf(Method::kOdometry), ClassTable{});
   slam.addDetections(odometryAt(1).stamp, {Detection{}});
   EXPECT_FALSE(slam.latestFrame());
   slam.addOdometry(odometryAt(1));

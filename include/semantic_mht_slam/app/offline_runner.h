@@ -12,6 +12,10 @@ namespace semantic_mht_slam {
 struct RunResult {
   std::vector<StampedPose> trajectory;  ///< T_map_base at every odometry sample that was used
   InputCounters counters;
+  std::vector<MixtureLandmark> landmarks;          ///< map frame, by rising id
+  std::vector<DetectionAssociation> associations;  ///< of every detection that was used
+  std::size_t submaps = 0;
+  std::vector<int> hypotheses;  ///< living ones after each odometry sample
   std::vector<double> step_ms;  ///< wall time of each step: an odometry sample and the detections up to its stamp
   double seconds = 0.0;         ///< wall time of the run, without reading and writing files
 };
@@ -21,6 +25,7 @@ using ProgressCallback = std::function<void(std::size_t, std::size_t)>;
 
 /// Feeds a recording to the estimator in the order of stamps, as fast as it goes.
 /// Throws InputError if nothing of the odometry could be used.
-RunResult runOffline(const Recording& recording, const SlamConfig& config, const ProgressCallback& progress);
+RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
+                     const ProgressCallback& progress);
 
 }  // namespace semantic_mht_slam

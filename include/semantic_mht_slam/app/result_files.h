@@ -18,7 +18,7 @@ std::optional<TrajectoryError> scoreRun(const Recording& recording, const std::v
 /// Writes trajectory.txt, trajectory.tum, loop_closures.csv, landmarks.csv, associations.csv and config.yaml to
 /// `folder`, which must exist.
 void writeResultFiles(const std::string& folder, const Recording& recording, const RunResult& result,
-                      const SystemConfig& config);
+                      const SystemConfig& config, const ClassTable& classes);
 
 /// Writes report.json; `map_bytes` is the size of the map file. Only `seconds`, `ms_per_frame` and `peak_rss_mb` differ
 /// between two runs with the same input.

@@ -22,9 +22,11 @@ struct NodeConfig {
 
 void describe(NodeConfig& config, Fields& fields);
 
+/// Throws ConfigError unless the three frames have names that tf takes and that differ.
+void requireUsableFrames(const NodeConfig& config);
+
 /// Every parameter of the system: one description for the YAML file, the ROS parameters and `--set`.
 struct SystemConfig {
-  std::uint64_t seed = 1;
   std::string class_table = "classes_semantic_kitti.yaml";
   SlamConfig slam;
   NodeConfig node;
@@ -50,6 +52,10 @@ Setting parseOverride(const std::string& text);
 /// Reads `config.class_table`; a relative path is looked up in `folder` (that of the YAML file), then in the package's
 /// own configuration folder.
 ClassTable loadClassTable(const SystemConfig& config, const std::string& folder);
+
+/// The class table's file by the same rule: as it stands if it is the package's own, else absolute, so that the
+/// effective configuration can be read back from another folder.
+std::string locateClassTable(const SystemConfig& config, const std::string& folder);
 
 /// A file of the package's configuration folder: beside an installed program, else in the source tree.
 std::string packageConfigFile(const std::string& name);

@@ -15,6 +15,9 @@ void forEachLine(std::string_view content, const std::function<void(int, std::st
 /// "file:line", the beginning of every message about a line.
 std::string at(const std::string& path, int line);
 
+/// Throws InputError if something else than a regular file stands at `path` (a folder, a device, a link).
+void requireReplaceable(const std::string& path);
+
 /// Writes `content` to a temporary file beside `path`, syncs it and renames it, so that `path` is either the old file
 /// or the whole new one. Throws InputError naming the file and the system's reason.
 void writeFileAtomically(const std::string& path, std::string_view content);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -15,6 +16,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/ros/input_queue.h"
+#include "semantic_mht_slam/ros/time_jump_guard.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 namespace semantic_mht_slam {
@@ -33,11 +35,21 @@ class SlamNode {
   SlamNode& operator=(const SlamNode&) = delete;
 
  private:
+  /// Objects whose sensor is not known to tf yet.
+  struct WaitingObjects {
+    SemanticObjectArray message;
+    ros::WallTime deadline;
+  };
+
   void work();
   void handle(const nav_msgs::Odometry& message);
   void handle(const SemanticObjectArray& message);
-  bool isExpectedFrame(const nav_msgs::Odometry& message) const;
-  void startAgainAfterJumpBack(Stamp stamp);
+  bool isExpectedFrame(const nav_msgs::Odometry& message);
+  void warn(const std::string& text);
+  void process(const nav_msgs::Odometry& message);
+  std::optional<Stamp> latestStamp() const;
+  void startAgain(Stamp stamp);
+  void retryObjects();
   void publishPose();
   void publishObjects();
   void publishTrajectory(const ros::WallTimerEvent& event);
@@ -56,7 +68,12 @@ class SlamNode {
 
   // Owned by the worker, but for the trajectory that the timer publishes.
   std::unique_ptr<Slam> slam_;
-  std::map<std::string, std::optional<Pose>> T_base_sensor_;
+  TimeJumpGuard jump_;
+  std::map<std::string, Pose> T_base_sensor_;
+  std::deque<WaitingObjects> waiting_objects_;
+  std::size_t without_transform_ = 0;
+  std::string unconnected_frame_;
+  std::map<std::string, ros::WallTime> last_warning_;  ///< by the text without its numbers
   std::size_t unknown_classes_ = 0;
   std::mutex slam_mutex_;
   std::size_t published_odometry_ = 0;

@@ -27,6 +27,7 @@ struct InputCounters {
   std::size_t frames = 0;                   ///< detector frames used
   std::size_t frames_before_odometry = 0;   ///< dropped: older than the odometry that is still known
   std::size_t frames_not_rising = 0;        ///< dropped: stamp not after the frame before
+  std::size_t frames_far_ahead = 0;         ///< dropped: ahead of the odometry by more than its history is long
   std::size_t frames_in_odometry_gap = 0;   ///< dropped: odometry around the stamp is too far apart
   std::size_t frames_waiting_too_long = 0;  ///< dropped: too many frames wait for odometry
   std::size_t detections = 0;               ///< detections in the frames used

@@ -1,33 +1,48 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/slam/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
+#include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
 
 /// How the trajectory is estimated.
 enum class Method {
-  kOdometry,  ///< the odometry as it is: the map frame is the odom frame
+  kOdometry,  ///< the odometry as it is, no map
+  kUkf,       ///< baseline: one hypothesis, nearest neighbours
+  kMhm,       ///< baseline: maximum likelihood multiple-hypothesis mapping
+  kDpmhm,     ///< Dirichlet-process multiple-hypothesis mapping
 };
+
+std::string nameOf(Method method);
 
 /// Configuration of the estimator.
 struct SlamConfig {
-  Method method = Method::kOdometry;
+  Method method = Method::kDpmhm;
+  std::uint64_t seed = 1;
   FrameAssemblerConfig input;
+  MapperConfig mapper;
 };
+
+/// The defaults that belong to a method.
+SlamConfig defaultsOf(Method method);
 
 void describe(SlamConfig& config, Fields& fields);
 
-/// The estimator: odometry and detections in, trajectory out. Single-threaded; the same input gives the same result
-/// whatever the order in which odometry and detections arrive.
+/// The estimator: odometry and detections in, trajectory and map out. Single-threaded; the same input gives the same
+/// result whatever the order in which odometry and detections arrive.
 class Slam {
  public:
-  explicit Slam(const SlamConfig& config);
+  Slam(const SlamConfig& config, const ClassTable& classes);
 
   /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used.
   bool addOdometry(const StampedPose& T_odom_base);
@@ -47,12 +62,24 @@ class Slam {
   /// The newest frame that found its odometry; empty before the first.
   const std::optional<Frame>& latestFrame() const { return latest_frame_; }
 
+  /// Ends the current submap, so that what it saw is in the map.
+  void finish();
+
+  /// The submaps that are finished.
+  const SubmapArchive& map() const { return map_; }
+
+  /// The hypotheses of the current submap, most likely first; empty for the method `odometry`.
+  const std::vector<MapHypothesis>& hypotheses() const;
+
   const InputCounters& counters() const { return assembler_.counters(); }
 
  private:
   void processReadyFrames();
 
   FrameAssembler assembler_;
+  Rng rng_;
+  std::optional<Mapper> mapper_;
+  SubmapArchive map_;
   std::vector<StampedPose> odometry_;
   std::optional<Frame> latest_frame_;
 };

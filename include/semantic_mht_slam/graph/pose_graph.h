@@ -1,0 +1,146 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/common/pose.h"
+
+namespace semantic_mht_slam {
+
+/// Covariance of the error of a relative pose T_from_to: order translation (m), rotation (rad), both in the frame `to`,
+/// the error being a small step on the right of the measurement.
+using PoseCov = Eigen::Matrix<double, 6, 6>;
+
+/// Parameters of `PoseGraph`.
+struct PoseGraphConfig {
+  double loop_cauchy_scale = 1.0;
+  double landmark_cauchy_scale = 1.0;
+  int window_submaps = 8;
+  int chunk_submaps = 10;
+  int window_iterations = 3;
+  int global_iterations = 4;
+  int repair_windows = 1;
+  int whole_submaps = 150;
+  double time_budget_s = 0.0;
+  double loop_gate = 16.812;
+  double odometry_cov_scale = 2.0;
+  int compared_loops = 64;
+};
+
+void describe(PoseGraphConfig& config, Fields& fields);
+
+/// A landmark as one submap saw it.
+struct LandmarkSighting {
+  std::int64_t landmark = 0;                             ///< the same number for the same landmark in every submap
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of the submap
+  Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();
+};
+
+/// A new node of the graph.
+struct SubmapNode {
+  Pose T_previous_submap;  ///< odometry from the submap before; for the first one its pose in the world
+  PoseCov odometry_cov = PoseCov::Identity();  ///< integrated along the submap before; not used for the first one
+  std::vector<LandmarkSighting> sightings;
+};
+
+/// A place that was recognised.
+struct LoopConstraint {
+  int from = 0;  ///< index of a submap
+  int to = 0;    ///< index of another submap
+  Pose T_from_to;
+  PoseCov cov = PoseCov::Identity();
+};
+
+/// Whether a loop closure takes part, and why it does not.
+enum class LoopState {
+  kAccepted,
+  kContradictsOdometry,  ///< further from odometry than its covariance allows
+  kInconsistent,         ///< outside the largest set of recent loop closures that agree with each other
+  kDoesNotFit,           ///< far from the optimised estimate
+};
+
+struct LoopDecision {
+  int loop = 0;  ///< what `addLoopClosure` returned
+  LoopState state = LoopState::kAccepted;
+  double mahalanobis_sq = 0.0;  ///< from the present estimate
+};
+
+/// What one call of `optimize` did.
+struct PoseGraphUpdate {
+  std::string failure;  ///< empty, or why the estimate was kept as it was
+  int iterations = 0;
+  bool out_of_time = false;       ///< the time budget ended the call; the next ones go on from the estimate reached
+  bool moved_everything = false;  ///< the correction went beyond the newest submaps
+  std::vector<LoopDecision> loop_changes;  ///< loop closures that were switched on or off
+};
+
+/// Pose graph of a drive (paper section III): submap poses in SE(3), point landmarks in R^3; odometry with integrated
+/// covariance, landmarks relative to the submaps that saw them, loop closures, priors. Errors are whitened with the
+/// upper square root of the information; a Cauchy loss is on landmarks and loop closures, none on odometry. The first
+/// submap is held.
+///
+/// The time of a call does not grow with the length of the drive as that of a batch solution does: the newest submaps
+/// are optimised with everything they see while the rest is held; a new loop closure is solved on a skeleton that has
+/// one node a chunk of submaps and condensed factors between them (Grisetti et al., Robust optimization of factor
+/// graphs by using condensed measurements, IROS 2012); the submaps between the nodes follow by interpolation, and the
+/// chunks that were bent most are optimised in full over the next calls. A graph that is still small is optimised as a
+/// whole instead when a loop closes. `optimizeFully` solves everything at once, whatever the size.
+///
+/// Wrong input (a covariance that is not positive definite, numbers that are not finite, unknown submaps) throws
+/// std::invalid_argument and changes nothing. Results do not depend on threads or time unless a time budget is set.
+class PoseGraph {
+ public:
+  explicit PoseGraph(const PoseGraphConfig& config = {});
+  ~PoseGraph();
+  PoseGraph(PoseGraph&&) noexcept;
+  PoseGraph& operator=(PoseGraph&&) noexcept;
+
+  /// Adds a submap behind the newest one and returns its index. A landmark may occur once in a submap.
+  int addSubmap(const SubmapNode& submap);
+
+  /// Adds a loop closure and returns its index. It takes part from the next `optimize` on, if it is accepted there.
+  int addLoopClosure(const LoopConstraint& loop);
+
+  /// Adds absolute knowledge of a pose; `cov` as in `LoopConstraint` with the world as `from`.
+  void addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov);
+
+  /// Brings the estimate up to date after additions, in bounded time.
+  PoseGraphUpdate optimize();
+
+  /// Solves the whole graph, in time that grows with it.
+  PoseGraphUpdate optimizeFully();
+
+  int submaps() const;
+
+  /// Poses of all submaps in the world frame.
+  std::vector<Pose> poses() const;
+  Pose pose(int submap) const;
+
+  /// Position in the world frame; empty for a landmark that no submap saw.
+  std::optional<Eigen::Vector3d> landmark(std::int64_t id) const;
+
+  std::vector<LoopDecision> loopDecisions() const;
+
+  /// F of the present estimate: half the squared whitened errors of all factors but rejected loop closures, before
+  /// robust losses.
+  double cost() const;
+
+  /// Covariance of a submap's pose, conditional on the held first one; a step as in `PoseCov` in the frame of the
+  /// submap. Looks at the whole graph: for requests, not for every submap. Empty if the problem is singular.
+  std::optional<PoseCov> poseCovariance(int submap) const;
+
+  /// Covariance of a landmark in the world frame; empty if it is unknown or the problem is singular.
+  std::optional<Eigen::Matrix3d> landmarkCovariance(std::int64_t id) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/models/class_table.h"
+
+namespace semantic_mht_slam {
+
+/// Stable name of a landmark; 0 is never used. A landmark that several hypotheses made from the same detection has one
+/// id.
+using LandmarkId = std::uint64_t;
+constexpr LandmarkId kNoLandmark = 0;
+
+constexpr int kMaxClasses = 32;
+
+/// Probability of each class of the table; sums to 1. Kept without allocation.
+using ClassProbs = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxClasses, 1>;
+
+/// One Gaussian of a mixture.
+struct MixtureComponent {
+  double weight = 1.0;  ///< in (0, 1]
+  Gaussian3 position;
+};
+
+/// A landmark with all that the hypotheses say of it: the fused result of a hypothesis tree (paper, section III).
+struct MixtureLandmark {
+  LandmarkId id = kNoLandmark;
+  std::vector<MixtureComponent> components;  ///< by falling weight; weights sum to 1
+  Gaussian3 position;                        ///< moments of the mixture
+  ClassProbs class_probs;
+  double existence_prob = 0.0;
+  int observations = 0;  ///< detections assigned to it in the most likely hypothesis that has it
+  int first_submap = 0;
+  int last_submap = 0;  ///< that saw it
+
+  ClassIndex mostLikelyClass() const;
+  bool isUndecided() const { return components.size() > 1; }
+};
+
+/// Mean and covariance of a mixture. Throws std::invalid_argument for an empty one.
+Gaussian3 moments(const std::vector<MixtureComponent>& components);
+
+}  // namespace semantic_mht_slam

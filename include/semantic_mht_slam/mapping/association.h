@@ -1,0 +1,85 @@
+#pragma once
+
+#include <vector>
+
+#include "semantic_mht_slam/common/assignment.h"
+#include "semantic_mht_slam/mapping/hypothesis.h"
+#include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/models/class_table.h"
+
+namespace semantic_mht_slam {
+
+/// A landmark inside the gate of a measurement.
+struct Candidate {
+  int landmark = 0;             ///< index in the hypothesis
+  double log_likelihood = 0.0;  ///< log N(p; pi, P + Sigma) + log P(c | class probabilities), 1/m^3
+  double mahalanobis_sq = 0.0;
+  bool is_outlier = false;  ///< better explained by a centroid that is far off
+};
+
+/// What the association of one frame with one hypothesis has to choose from.
+/// Columns of the costs: landmark j is column j, measurement i as new landmark is column L + i, as false positive
+/// L + R + i (L landmarks, R measurements).
+struct AssociationProblem {
+  SparseCostMatrix costs;                     ///< negative log-likelihoods of the four cases, nats
+  std::vector<std::vector<Candidate>> gated;  ///< of each measurement
+  int landmarks = 0;
+  int measurements = 0;
+
+  bool isLandmark(int column) const { return column < landmarks; }
+  bool isNew(int column) const { return column >= landmarks && column < landmarks + measurements; }
+  bool isFalsePositive(int column) const { return column >= landmarks + measurements; }
+
+  /// The candidate of a measurement behind a landmark column; nullptr if it is outside the gate.
+  const Candidate* candidate(int measurement, int landmark) const;
+};
+
+/// Likelihoods of associations: the four cases of the paper's section II-A and the weight of its equations 1 to 3.
+class AssociationModel {
+ public:
+  AssociationModel(const MapperConfig& config, const ClassTable& classes);
+
+  /// Fills `problem`, whose memory is used again. The order of measurements and landmarks does not change the result
+  /// but for the order of rows and columns.
+  void formulate(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements, double driven_m,
+                 AssociationProblem& problem) const;
+
+  /// log P(detected class | class probabilities).
+  double logClassLikelihood(ClassIndex detected, const ClassProbs& probs) const;
+
+  /// Class probabilities after a detection of that class (Bayes).
+  ClassProbs updatedClassProbs(const ClassProbs& probs, ClassIndex detected) const;
+
+  /// Class probabilities of a landmark that was seen once.
+  ClassProbs initialClassProbs(ClassIndex detected) const;
+
+  /// log of the assignment prior N^n! N^f! / N^m! Poisson(N^n) Poisson(N^f) (paper eq. 3, with exp(-lambda V)).
+  double logAssignmentPrior(int new_landmarks, int false_positives, int measurements) const;
+
+  /// log p_s of a class (paper eq. 2).
+  double logClassPrior(ClassIndex detected) const { return log_class_prior_[static_cast<std::size_t>(detected)]; }
+
+  double logMapVolume() const { return log_map_volume_; }
+  double gateMahalanobisSq() const { return gate_mahalanobis_sq_; }
+
+ private:
+  void collectCandidates(const MapHypothesis& hypothesis, const Measurement& measurement, double driven_m,
+                         std::vector<Candidate>& candidates) const;
+  bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2, const Eigen::Vector3d& d,
+                       Candidate& candidate, double& log_density) const;
+  double logCountPrior(int observations) const;
+  void addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const;
+  void addLikelihoodCosts(AssociationProblem& problem) const;
+  void addDistanceCosts(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                        AssociationProblem& problem) const;
+
+  MapperConfig config_;
+  int class_count_;
+  Eigen::ArrayXXd class_likelihood_;  ///< P(detected | true), a row a detected class
+  std::vector<double> log_class_prior_;
+  std::vector<double> transition_variance_m2_;
+  double log_map_volume_;
+  double gate_mahalanobis_sq_;
+};
+
+}  // namespace semantic_mht_slam

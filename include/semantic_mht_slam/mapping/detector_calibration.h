@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/models/detection.h"
+
+namespace semantic_mht_slam {
+
+/// How the detector's noise is found out while driving.
+struct CalibrationConfig {
+  bool enabled = true;
+  int prior_samples = 60;
+  int lag_frames = 10;
+  double max_distance_m = 4.0;
+  double min_stddev_m = 0.03;
+};
+
+void describe(CalibrationConfig& config, Fields& fields);
+
+/// Running median of positive numbers: a histogram with logarithmic bins, 5 % wide, which forgets nothing.
+class RunningMedian {
+ public:
+  void add(double value, int count = 1);
+  double median() const;
+  int count() const { return count_; }
+
+ private:
+  static constexpr int kBins = 200;
+  std::array<int, kBins> bins_{};
+  int count_ = 0;
+};
+
+/// Noise of a detector's centroids, estimated from consecutive frames without knowing which object is which: residuals
+/// of mutual nearest neighbours of one class after the odometry's motion between the frames. Their medians survive the
+/// neighbours that are wrong. Residuals over one frame give the white noise along the line of sight, across it and
+/// vertically, by class and range; what is added over several frames gives how fast a centroid wanders with the
+/// viewpoint. Begins with the class table's values as if they had been measured a number of times.
+class DetectorCalibration {
+ public:
+  DetectorCalibration(const CalibrationConfig& config, const ClassTable& classes);
+
+  /// Takes the detections of the next frame, base frame.
+  void add(const Pose& T_odom_base, const Detections& detections);
+
+  /// Standard deviations along the line of sight, across it and vertically, metres.
+  Eigen::Vector3d noiseStddev(ClassIndex class_index, double range_m) const;
+
+  /// Growth of a centroid's variance with the distance driven, m^2/m.
+  double wanderVariancePerMetre(ClassIndex class_index) const;
+
+ private:
+  static constexpr int kRangeBins = 3;
+
+  struct PastFrame {
+    Pose T_odom_base;
+    std::vector<Eigen::Vector3d> positions_m;
+    std::vector<ClassIndex> classes;
+  };
+  struct ClassStatistics {
+    std::array<std::array<RunningMedian, 3>, kRangeBins> noise;  ///< by range, then direction
+    RunningMedian wander;                                        ///< horizontal, over `lag_frames`
+    RunningMedian wander_distance_m;
+  };
+
+  void compare(const PastFrame& past, const PastFrame& now, bool is_lagged);
+  static int rangeBin(double range_m);
+
+  CalibrationConfig config_;
+  std::vector<ClassStatistics> statistics_;
+  std::deque<PastFrame> past_;
+};
+
+}  // namespace semantic_mht_slam

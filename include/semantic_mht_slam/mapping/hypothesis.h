@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "semantic_mht_slam/map/landmark.h"
+#include "semantic_mht_slam/mapping/pose_offset.h"
+
+namespace semantic_mht_slam {
+
+/// A detection, in the frame of the submap as the odometry has it or as a hypothesis corrects it.
+struct Measurement {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();  ///< of the detector; for association also of the pose
+  ClassIndex class_index = 0;
+  int row = 0;
+  Eigen::Vector3d outlier_variance_m2 = Eigen::Vector3d::Zero();  ///< added if the centroid is far off, submap axes
+  double wander_variance_per_m = 0.0;  ///< growth of a landmark's variance with the distance driven, by class
+  LandmarkId id_if_new = kNoLandmark;  ///< the same in every hypothesis that makes a landmark of it
+};
+
+/// What one hypothesis believes of one landmark. Shared between hypotheses until it changes.
+struct TrackedLandmark {
+  LandmarkId id = kNoLandmark;
+  Gaussian3 position;  ///< submap frame
+  ClassProbs class_probs;
+  double log_existence_odds = 0.0;  ///< a real object against clutter, by hits and misses
+  double visible_prob = 1.0;        ///< that it is not hidden, if it exists
+  int observations = 0;
+  bool is_from_earlier_submap = false;  ///< case (ii): not seen in this submap so far
+  int first_submap = 0;
+  int last_submap = 0;
+  double updated_at_m = 0.0;  ///< distance driven in the submap when it was last seen
+};
+
+using TrackedLandmarkPtr = std::shared_ptr<const TrackedLandmark>;
+
+/// Which landmark each measurement of a frame went to, with the frames before: a list that branches share.
+struct AssociationRecord {
+  std::shared_ptr<const AssociationRecord> previous;
+  std::size_t frame = 0;
+  std::vector<LandmarkId> landmark_of_measurement;  ///< kNoLandmark: false positive
+};
+
+/// A leaf of the hypothesis tree: a map, and the associations that led to it.
+struct MapHypothesis {
+  std::uint64_t id = 0;
+  std::uint64_t parent_id = 0;  ///< the hypothesis that it branched from
+  std::size_t born_frame = 0;
+  double log_weight = 0.0;                    ///< normalised over the leaves
+  std::vector<TrackedLandmarkPtr> landmarks;  ///< by rising id
+  std::shared_ptr<const AssociationRecord> history;
+  int false_positives = 0;  ///< N^0 of the paper
+  PoseOffset offset;        ///< of the odometry in this submap
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "semantic_mht_slam/common/k_best_assignment.h"
+#include "semantic_mht_slam/common/random.h"
+#include "semantic_mht_slam/mapping/association.h"
+#include "semantic_mht_slam/mapping/hypothesis.h"
+#include "semantic_mht_slam/mapping/mapper_config.h"
+
+namespace semantic_mht_slam {
+
+/// One time step for the tree.
+struct TreeInput {
+  std::size_t frame = 0;
+  int submap = 0;
+  double driven_m = 0.0;                  ///< in this submap
+  double step_m = 0.0;                    ///< driven since the frame before
+  Pose T_submap_base;                     ///< by the odometry
+  std::vector<Measurement> measurements;  ///< base frame, covariance of the detector
+};
+
+/// The multiple-hypothesis tree of one submap (paper, section II): its leaves, weighted, by falling weight.
+class MultiHypothesisTree {
+ public:
+  MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes);
+
+  /// Starts again from one hypothesis.
+  void restart(std::vector<TrackedLandmarkPtr> landmarks);
+
+  /// Grows every leaf by its likely assignments, weighs, merges, drops and resamples.
+  void step(const TreeInput& input, Rng& rng);
+
+  /// The leaves; the first is the most likely one. Never empty.
+  const std::vector<MapHypothesis>& leaves() const { return leaves_; }
+
+ private:
+  void predict(MapHypothesis& hypothesis, const TreeInput& input) const;
+  void measureFrom(const Pose& T_submap_base, const PoseOffset* offset, const TreeInput& input,
+                   std::vector<Measurement>& measurements) const;
+  PoseOffset offsetAfter(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
+                         int choice) const;
+  void expand(MapHypothesis& parent, const TreeInput& input, std::vector<MapHypothesis>& children);
+  MapHypothesis makeChild(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
+                          int choice);
+  TrackedLandmarkPtr updated(const TrackedLandmark& landmark, const Measurement& measurement, const TreeInput& input,
+                             const Candidate& candidate) const;
+  TrackedLandmarkPtr makeLandmark(const Measurement& measurement, const TreeInput& input) const;
+  double applyMissedDetections(MapHypothesis& hypothesis, const TreeInput& input,
+                               const std::vector<char>& is_seen) const;
+  double detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const;
+  int splitOf(const AssociationProblem& problem, int measurement, const std::vector<char>& is_seen) const;
+  void normalizeAndSort();
+  void prune(Rng& rng);
+  void resample(Rng& rng);
+  void keepBestThird();
+
+  MapperConfig config_;
+  AssociationModel model_;
+  int class_count_;
+  KBestSolver solver_;
+  AssociationProblem problem_;
+  std::vector<Measurement> measurements_;  ///< submap frame, predicted pose, with the pose's uncertainty
+  std::vector<Measurement> corrected_;     ///< submap frame, corrected pose
+  std::vector<MapHypothesis> leaves_;
+  std::uint64_t next_hypothesis_id_ = 1;
+};
+
+}  // namespace semantic_mht_slam

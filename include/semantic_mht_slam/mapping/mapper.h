@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "semantic_mht_slam/common/random.h"
+#include "semantic_mht_slam/common/stamp.h"
+#include "semantic_mht_slam/map/submap.h"
+#include "semantic_mht_slam/mapping/hypothesis_tree.h"
+#include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/models/detection.h"
+
+namespace semantic_mht_slam {
+
+/// Builds submaps: stretches of fixed travelled length, each with a hypothesis tree of its own (paper, section II).
+class Mapper {
+ public:
+  Mapper(const MapperConfig& config, const ClassTable& classes);
+
+  /// Takes one frame: detections in the base frame, odometry at their stamp. Returns the submap that was full before
+  /// the frame, if the frame begins a new one.
+  std::optional<Submap> add(std::size_t frame, Stamp stamp, const Pose& T_odom_base, const Detections& detections,
+                            Rng& rng);
+
+  /// Ends the current submap; empty if it has no frame.
+  std::optional<Submap> finish();
+
+  /// The leaves of the current tree, most likely first.
+  const std::vector<MapHypothesis>& hypotheses() const { return tree_.leaves(); }
+
+  /// The current submap's landmarks, fused, in the odom frame's place of it.
+  const Pose& T_odom_submap() const { return T_odom_submap_; }
+  int submapIndex() const { return index_; }
+
+ private:
+  void begin(Stamp stamp, const Pose& T_odom_base);
+  Measurement makeMeasurement(const Detection& detection) const;
+  std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
+
+  MapperConfig config_;
+  ClassTable classes_;
+  DetectorCalibration calibration_;
+  MultiHypothesisTree tree_;
+  LandmarkId next_landmark_ = 1;
+  int index_ = -1;
+  bool is_open_ = false;
+  Stamp begin_ = 0;
+  Stamp end_ = 0;
+  Pose T_odom_submap_;
+  Pose T_odom_last_;
+  double length_m_ = 0.0;
+  std::vector<std::vector<int>> rows_;  ///< of the measurements of each frame of this submap
+  Eigen::Matrix3d detectorCov(const Detection& detection) const;
+  std::vector<TrackedLandmarkPtr> carried_;  ///< landmarks that go on into the next submap, old submap frame
+  Pose T_odom_carried_;
+  PoseOffset carried_offset_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/mapping/detector_calibration.h"
+#include "semantic_mht_slam/mapping/duplicate_merging.h"
+
+namespace semantic_mht_slam {
+
+/// How hypotheses are made and weighed.
+enum class Estimator {
+  kDpmhm,  ///< Dirichlet-process association, KLD resampling (the paper's method)
+  kMhm,    ///< maximum likelihood association, the best third is kept when the tree exceeds its size
+  kUkf,    ///< one hypothesis, Hungarian assignment on Euclidean distances
+};
+
+enum class CountPrior { kNone, kLinear, kExponential };
+enum class ClassModel { kDelta, kConfusion };
+
+/// Likelihoods of the four cases of an association (paper, section II-A) and the gate.
+struct AssociationConfig {
+  double gate_prob = 0.999;
+  double max_gate_m = 6.0;
+  CountPrior count_prior = CountPrior::kLinear;
+  int count_prior_cap = 20;
+  double concentration = 200.0;
+  double false_positive_rate = 0.001;
+  double map_volume_m3 = 30000.0;
+  ClassModel class_model = ClassModel::kConfusion;
+  double confusion_prob = 0.1;
+  double new_density = 1.0;
+  double false_positive_density = 1.0;
+  double outlier_prob = 0.05;
+  double outlier_factor = 2.0;
+  double outlier_min_stddev_m = 0.3;
+  double ukf_gate_m = 2.0;
+  double split_distance_factor = 0.4;
+};
+
+/// Detections that did not come: negative evidence.
+struct DetectionConfig {
+  bool missed_detections = true;
+  double detection_prob = 0.6;
+  double half_range_m = 35.0;
+  double max_range_m = 50.0;
+  double visibility_switch_prob = 0.03;
+  double birth_prob = 0.3;
+  double keep_prob = 0.5;
+  double forget_prob = 0.02;
+};
+
+/// The hypothesis tree (paper, section II-B).
+struct TreeConfig {
+  int max_hypotheses = 30;
+  int max_branches = 4;
+  double branch_log_ratio = 3.0;
+  double ess_ratio = 0.5;
+  double kld_epsilon = 0.05;
+  double kld_delta = 0.1;
+  double min_weight = 0.08;
+};
+
+/// Odometry noise, and how long a submap lives.
+struct SubmapConfig {
+  double length_m = 30.0;
+  double odometry_stddev_m = 0.03;
+  double odometry_stddev_rad = 0.0007;
+  bool correct_pose = true;
+  double propagation_m = 120.0;
+};
+
+/// Everything that the mapper needs.
+struct MapperConfig {
+  Estimator estimator = Estimator::kDpmhm;
+  bool semantics = true;
+  AssociationConfig association;
+  DetectionConfig detection;
+  TreeConfig tree;
+  SubmapConfig submap;
+  CalibrationConfig calibration;
+  DuplicateConfig duplicates;
+};
+
+/// The defaults that belong to an estimator. The baselines are those of the paper: they have neither the Dirichlet
+/// process's count prior nor what goes beyond the paper (pose correction, heavy tails, split objects, merging of
+/// duplicates); each of these can be switched on for them by its own key.
+MapperConfig defaultsOf(Estimator estimator);
+
+void describe(AssociationConfig& config, Fields& fields);
+void describe(DetectionConfig& config, Fields& fields);
+void describe(TreeConfig& config, Fields& fields);
+void describe(SubmapConfig& config, Fields& fields);
+void describe(MapperConfig& config, Fields& fields);
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/common/pose.h"
+
+namespace semantic_mht_slam {
+
+/// Error of the odometry's pose in the submap, as a hypothesis sees it: translation (submap axes) and heading about the
+/// sensor. T_submap_base (corrected) = translation + rotation about z, applied at the odometry's position.
+struct PoseOffset {
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();  ///< x, y, z in m, yaw in rad
+  Eigen::Matrix4d cov = Eigen::Matrix4d::Zero();   ///< m^2, m rad, rad^2
+};
+
+/// The corrected pose of the base in the submap.
+Pose corrected(const Pose& T_submap_base, const PoseOffset& offset);
+
+/// Covariance that the offset's uncertainty gives to a point seen at `lever_m` from the base (submap axes), m^2.
+Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_m);
+
+/// The offset after driving `distance_m`: odometry errors grow with the square root of the distance.
+PoseOffset grown(const PoseOffset& offset, double distance_m, double stddev_m, double stddev_rad);
+
+/// A detection and the landmark that it was assigned to.
+struct OffsetObservation {
+  Eigen::Vector3d lever_m;     ///< detection from the base, submap axes, with the offset's mean applied
+  Eigen::Vector3d residual_m;  ///< landmark minus detection
+  Eigen::Matrix3d cov_m2;      ///< of the residual, without the offset's part
+};
+
+/// Kalman update of the offset by all assigned detections of a frame, with Huber weights beyond `huber_sigma`
+/// deviations. Without observations, or if the result is not finite, the offset stays as it was.
+PoseOffset updated(const PoseOffset& offset, const std::vector<OffsetObservation>& observations, double huber_sigma);
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "semantic_mht_slam/map/submap.h"
+
+namespace semantic_mht_slam {
+
+/// The finished submaps and what they know of each landmark. Merged ids stay resolvable.
+class SubmapArchive {
+ public:
+  /// Landmarks with less existence probability are kept to be seen again, but are not part of the map.
+  explicit SubmapArchive(double keep_prob) : keep_prob_(keep_prob) {}
+
+  void add(std::shared_ptr<const Submap> submap);
+
+  const std::vector<std::shared_ptr<const Submap>>& submaps() const { return submaps_; }
+
+  /// The landmarks of the map in the odom frame of the submap that saw them last, by rising id.
+  std::vector<MixtureLandmark> landmarks() const;
+
+  /// The landmark that an id stands for now: itself, or the one that it was merged into.
+  LandmarkId resolve(LandmarkId id) const;
+
+  /// Every detection of the finished submaps with the landmark of the map that it belongs to; kNoLandmark for false
+  /// positives and for landmarks that did not make it into the map.
+  std::vector<DetectionAssociation> associations() const;
+
+ private:
+  struct Entry {
+    int submap = 0;  ///< index in `submaps_`
+    MixtureLandmark landmark;
+  };
+
+  bool isKept(LandmarkId id) const;
+
+  double keep_prob_;
+  std::vector<std::shared_ptr<const Submap>> submaps_;
+  std::map<LandmarkId, Entry> landmarks_;
+  std::map<LandmarkId, LandmarkId> survivor_of_;
+};
+
+/// A landmark moved from frame b to frame a.
+MixtureLandmark transformed(const Pose& T_a_b, const MixtureLandmark& landmark);
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "semantic_mht_slam/graph/pose_graph.h"
+
+#include "cost_functions.h"
+#include "pose_block.h"
+
+namespace semantic_mht_slam {
+
+/// One sighting of a landmark; its cost function is built once and lent to every problem that needs it.
+struct SightingFactor {
+  int submap = 0;
+  std::unique_ptr<PointCost<3>> cost;
+};
+
+struct LandmarkState {
+  int anchor = 0;  ///< submap that saw it first; corrections move the landmark with it
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of the anchor
+  std::vector<SightingFactor> sightings;
+};
+
+struct PriorFactor {
+  Pose T_world_submap;
+  PoseCov cov;
+  std::unique_ptr<RelativePose3Cost> cost;
+};
+
+struct SubmapState {
+  std::array<double, kPoseBlock> block;              ///< estimate, as Ceres sees it
+  std::unique_ptr<RelativePose3Cost> odometry_cost;  ///< from the submap before; none for the first
+  std::vector<std::int64_t> landmarks;
+  std::vector<int> loops;  ///< loop closures with an end here
+  std::vector<PriorFactor> priors;
+
+  Pose pose() const {
+    Pose result;
+    readBlock(block.data(), result);
+    return result;
+  }
+};
+
+struct LoopState3 {
+  LoopConstraint constraint;
+  std::unique_ptr<RelativePose3Cost> cost;
+  LoopState state = LoopState::kAccepted;
+  bool is_reviewed = false;
+  bool is_readmitted = false;  ///< outside the consistent set, but fits the estimate that the others gave
+};
+
+/// Everything that was added, with the present estimate. Addresses of blocks never change.
+struct GraphState {
+  std::deque<SubmapState> submaps;
+  std::map<std::int64_t, LandmarkState> landmarks;
+  std::deque<LoopState3> loops;
+
+  Eigen::Vector3d landmarkInWorld(const LandmarkState& landmark) const {
+    return submaps[landmark.anchor].pose() * landmark.position_m;
+  }
+};
+
+}  // namespace semantic_mht_slam

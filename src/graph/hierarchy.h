@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graph_state.h"
+#include "loop_review.h"
+#include "skeleton.h"
+
+namespace semantic_mht_slam {
+
+/// Covariance of the error e (translation, rotation; see `BatchGraph`) of a relative pose, from that of a step of its
+/// end (rotation, translation in the world).
+PoseCov errorCov(const Pose& T_world_to, const Eigen::MatrixXd& step_cov);
+
+/// Keeps the skeleton of a graph: which submap belongs to which chunk, condensed links along the drive, links for loop
+/// closures, and carries what the skeleton finds back to the submaps.
+class Hierarchy {
+ public:
+  explicit Hierarchy(const PoseGraphConfig& config);
+
+  /// A node for a new submap if it begins a chunk, a link if it saw old landmarks again; call for every submap once,
+  /// after it was optimised with its neighbours.
+  void extend(GraphState& graph, const LoopReview& review, int submap);
+
+  /// Takes over the states of loop closures and adds new priors; true if the skeleton has to be solved for them.
+  bool update(GraphState& graph, const LoopReview& review);
+
+  /// Puts the nodes where their submaps are.
+  void synchronize(const GraphState& graph);
+
+  /// Solves the skeleton and moves all submaps accordingly.
+  Skeleton::Outcome solve(GraphState& graph, double max_seconds);
+
+  /// Mahalanobis distance squared of a loop closure from the estimate of the skeleton, whose resolution its covariance
+  /// includes.
+  double gap(const GraphState& graph, int loop) const;
+
+  /// Links that fit the estimate get their robust loss; links through landmarks that are far from it are switched off.
+  void settle();
+
+  /// The piece of the drive, as long as the window, that was bent most since it was last optimised in full, as a list
+  /// of its submaps and a few around it; empty if all are as good as straight.
+  std::vector<int> takeBentPiece(const GraphState& graph);
+
+  /// Everything was just optimised in full: nothing is left to repair or to bring in.
+  void finishWhole(const GraphState& graph);
+
+  bool isPending() const { return is_pending_; }
+
+  /// True if links came or went since the skeleton was solved.
+  bool hasNews() const { return is_pending_ || news_ > 0.0; }
+
+ private:
+  struct LoopLink {
+    std::optional<int> link;  ///< none within a chunk: the window optimisations take care of it
+    bool is_settled = false;
+  };
+
+  int chunkOf(int submap) const { return submap / config_.chunk_submaps; }
+  int firstOf(int chunk) const { return chunk * config_.chunk_submaps; }
+  int nearestNode(int submap) const;
+  void addNode(GraphState& graph, const LoopReview& review, int submap);
+  std::optional<int> addLiftedLink(const GraphState& graph, const LoopReview& review, const LoopConstraint& loop);
+  void addSharedLandmarks(const GraphState& graph, const LoopReview& review, int submap);
+  void addPriors(GraphState& graph);
+  void moveSubmaps(GraphState& graph);
+  void moveChunk(GraphState& graph, int chunk, const std::vector<Pose>& old_nodes);
+
+  const PoseGraphConfig& config_;
+  Skeleton skeleton_;
+  std::vector<LoopLink> loop_links_;      ///< by loop closure
+  std::vector<LoopLink> landmark_links_;  ///< through landmarks that were seen again
+  std::vector<std::size_t> prior_links_;  ///< per submap: how many of its priors are in
+  std::vector<double> bend_;              ///< per piece of `window_submaps`, metres
+  double news_ = 0.0;  ///< Mahalanobis distances squared that loop closures brought since the skeleton was solved
+  bool is_pending_ = false;
+};
+
+}  // namespace semantic_mht_slam

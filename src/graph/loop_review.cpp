@@ -1,0 +1,119 @@
+#include "loop_review.h"
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+
+#include "semantic_mht_slam/graph/max_clique.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kSwitchOffFactor = 3.0;  // of the gate: a loop closure that is in must fit worse to go than to come
+constexpr long kCliqueSteps = 500;
+
+}  // namespace
+
+double mahalanobisSq(const GraphState& graph, const LoopConstraint& loop) {
+  const Vector6d error = edgeError(graph.submaps[loop.from].pose(), graph.submaps[loop.to].pose(), loop.T_from_to);
+  return error.dot(loop.cov.llt().solve(error));
+}
+
+void LoopReview::extendOdometry(const Pose& T_previous_submap, const PoseCov& cov, bool is_first) {
+  if (is_first) {
+    odometry_.startSegment();
+  } else {
+    odometry_.append(T_previous_submap, config_.odometry_cov_scale * cov);
+  }
+}
+
+UncertainLink<3> LoopReview::estimatedLink(const GraphState& graph, int from, int to) const {
+  return {graph.submaps[from].pose().inverse() * graph.submaps[to].pose(), odometry_.between(from, to).cov};
+}
+
+bool LoopReview::fitsOdometry(const GraphState& graph, const LoopConstraint& constraint) const {
+  const TestedLoop<3> loop = makeTestedLoop<3>(constraint.from, constraint.to, constraint.T_from_to, constraint.cov);
+  if (gapToOdometry(odometry_, loop) <= config_.loop_gate) return true;
+  return Walk<3>().along(loop.forward).along(estimatedLink(graph, loop.to, loop.from)).gap() <= config_.loop_gate;
+}
+
+bool LoopReview::agree(const GraphState& graph, const TestedLoop<3>& a, const TestedLoop<3>& b) const {
+  if (gapBetween(odometry_, a, b) <= config_.loop_gate) return true;
+  return Walk<3>()
+             .along(a.forward)
+             .along(estimatedLink(graph, a.to, b.to))
+             .along(b.backward)
+             .along(estimatedLink(graph, b.from, a.from))
+             .gap() <= config_.loop_gate;
+}
+
+void LoopReview::add(const GraphState& graph, const LoopConstraint& constraint) {
+  const TestedLoop<3> loop = makeTestedLoop<3>(constraint.from, constraint.to, constraint.T_from_to, constraint.cov);
+  const int count = static_cast<int>(loops_.size());
+  std::vector<bool>& agrees = agrees_.emplace_back();
+  for (int other = count - 1; other >= std::max(0, count - config_.compared_loops); --other) {
+    agrees.push_back(agree(graph, loop, loops_[other]));
+  }
+  fits_odometry_.push_back(fitsOdometry(graph, constraint));
+  loops_.push_back(loop);
+}
+
+/// The newest loop closures that may agree with each other.
+std::vector<int> LoopReview::candidates(const GraphState& graph) const {
+  std::vector<int> result;
+  const int count = static_cast<int>(graph.loops.size());
+  for (int i = std::max(0, count - config_.compared_loops); i < count; ++i) {
+    const LoopState state = graph.loops[i].state;
+    if (state == LoopState::kAccepted || state == LoopState::kInconsistent) result.push_back(i);
+  }
+  return result;
+}
+
+void LoopReview::decide(GraphState& graph) {
+  const int count = static_cast<int>(graph.loops.size());
+  if (reviewed_ == count) return;
+  for (; reviewed_ < count; ++reviewed_) {
+    LoopState3& loop = graph.loops[reviewed_];
+    loop.state = fits_odometry_[reviewed_] ? LoopState::kAccepted : LoopState::kContradictsOdometry;
+    loop.is_reviewed = true;
+  }
+  const std::vector<int> nodes = candidates(graph);
+  BitGraph agreement(static_cast<int>(nodes.size()));
+  for (int a = 0; a < agreement.size(); ++a) {
+    for (int b = 0; b < a; ++b) {
+      if (agrees_[nodes[a]][nodes[a] - nodes[b] - 1]) agreement.join(a, b);
+    }
+  }
+  std::vector<bool> chosen(nodes.size(), false);
+  for (const int node : maximumClique(agreement, kCliqueSteps)) chosen[node] = true;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    LoopState3& loop = graph.loops[nodes[i]];
+    if (chosen[i]) loop.is_readmitted = false;
+    loop.state = chosen[i] || loop.is_readmitted ? LoopState::kAccepted : LoopState::kInconsistent;
+  }
+}
+
+void LoopReview::compareWithEstimate(GraphState& graph, const std::function<double(int)>& gap) const {
+  const int count = static_cast<int>(graph.loops.size());
+  for (int i = std::max(0, count - config_.compared_loops); i < count; ++i) {
+    LoopState3& loop = graph.loops[i];
+    if (!loop.is_reviewed) continue;
+    const double distance = gap(i);
+    if (loop.state == LoopState::kAccepted) {
+      if (distance <= kSwitchOffFactor * config_.loop_gate) continue;
+      loop.state = LoopState::kDoesNotFit;
+      loop.is_readmitted = false;
+    } else if (distance <= config_.loop_gate) {
+      loop.state = LoopState::kAccepted;
+      loop.is_readmitted = true;
+    }
+  }
+}
+
+PoseCov LoopReview::odometryCov(int from, int to) const {
+  const UncertainLink<3> link = odometry_.between(from, to);
+  const Matrix6d to_right = adjoint(link.T_from_to.inverse());
+  return to_right * link.cov * to_right.transpose();
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,271 @@
+#include "semantic_mht_slam/graph/pose_graph.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/LU>
+
+#include "deadline.h"
+#include "hierarchy.h"
+#include "loop_review.h"
+#include "pose_graph_checks.h"
+#include "subgraph.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kFullIterations = 50;
+constexpr int kRepairIterations = 1;  // an interpolated piece is so near its optimum that one step reaches it
+constexpr double kWindowShare = 0.5;  // of a time budget, so that loop closures get the rest
+
+std::vector<int> range(int first, int end) {
+  std::vector<int> numbers(end - first);
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
+}  // namespace
+
+class PoseGraph::Impl {
+ public:
+  explicit Impl(const PoseGraphConfig& config) : config_(config), review_(config_), hierarchy_(config_) {}
+
+  int addSubmap(const SubmapNode& node);
+  int addLoopClosure(const LoopConstraint& loop);
+  void addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov);
+  PoseGraphUpdate optimize();
+  PoseGraphUpdate optimizeFully();
+  Subgraph whole(GraphState& graph) const;
+  std::vector<LoopDecision> decisions() const;
+
+  mutable GraphState graph_;  // lent to Ceres, whose interface takes mutable addresses also for evaluation
+
+ private:
+  bool solveGlobally(const Deadline& deadline, PoseGraphUpdate& update);
+  void closeLoops(const Deadline& deadline, PoseGraphUpdate& update);
+  bool solveWindow(const std::vector<int>& submaps, int iterations, double max_seconds, PoseGraphUpdate& update);
+  void reportChanges(PoseGraphUpdate& update);
+
+  PoseGraphConfig config_;
+  LoopReview review_;
+  Hierarchy hierarchy_;
+  int in_hierarchy_ = 0;
+  std::vector<LoopState> reported_;
+};
+
+int PoseGraph::Impl::addSubmap(const SubmapNode& node) {
+  const int index = static_cast<int>(graph_.submaps.size());
+  check(node, index == 0);
+  SubmapState& submap = graph_.submaps.emplace_back();
+  const Pose before = index == 0 ? Pose::identity() : graph_.submaps[index - 1].pose();
+  writeBlock(before * node.T_previous_submap, submap.block.data());
+  if (index > 0) {
+    submap.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_submap, node.odometry_cov.inverse());
+  }
+  for (const LandmarkSighting& sighting : node.sightings) {
+    const auto [entry, is_new] = graph_.landmarks.try_emplace(sighting.landmark);
+    if (is_new) {
+      entry->second.anchor = index;
+      entry->second.position_m = sighting.position_m;
+    }
+    entry->second.sightings.push_back(
+        {index, std::make_unique<PointCost<3>>(sighting.position_m, sighting.cov_m2.inverse())});
+    submap.landmarks.push_back(sighting.landmark);
+  }
+  review_.extendOdometry(node.T_previous_submap, node.odometry_cov, index == 0);
+  return index;
+}
+
+int PoseGraph::Impl::addLoopClosure(const LoopConstraint& loop) {
+  const int count = static_cast<int>(graph_.submaps.size());
+  require(loop.from >= 0 && loop.from < count && loop.to >= 0 && loop.to < count && loop.from != loop.to,
+          "a loop closure joins two different submaps that exist");
+  require(loop.T_from_to.isValid(), "a loop closure is not a finite pose");
+  require(isCovariance6(loop.cov), "a loop closure's covariance is not positive definite");
+  const int index = static_cast<int>(graph_.loops.size());
+  LoopState3& state = graph_.loops.emplace_back();
+  state.constraint = loop;
+  state.cost = std::make_unique<RelativePose3Cost>(loop.T_from_to, loop.cov.inverse());
+  graph_.submaps[loop.from].loops.push_back(index);
+  graph_.submaps[loop.to].loops.push_back(index);
+  review_.add(graph_, loop);
+  return index;
+}
+
+void PoseGraph::Impl::addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov) {
+  require(submap >= 0 && submap < static_cast<int>(graph_.submaps.size()), "a prior is for a submap that exists");
+  require(T_world_submap.isValid() && isCovariance6(cov), "a prior is not finite or not positive definite");
+  graph_.submaps[submap].priors.push_back(
+      {T_world_submap, cov, std::make_unique<RelativePose3Cost>(T_world_submap, cov.inverse())});
+}
+
+/// True if the solution was not cut short.
+bool PoseGraph::Impl::solveWindow(const std::vector<int>& submaps, int iterations, double max_seconds,
+                                  PoseGraphUpdate& update) {
+  Subgraph window(graph_, submaps, Surroundings::kHeld, config_);
+  const Subgraph::Outcome outcome = window.optimize(iterations, max_seconds);
+  update.iterations += outcome.iterations;
+  update.out_of_time = update.out_of_time || outcome.out_of_time;
+  if (!outcome.failure.empty()) update.failure = outcome.failure;
+  return outcome.failure.empty() && !outcome.out_of_time;
+}
+
+/// True if the skeleton was solved. What there is no time for stays pending for the next call.
+bool PoseGraph::Impl::solveGlobally(const Deadline& deadline, PoseGraphUpdate& update) {
+  if (!hierarchy_.update(graph_, review_)) return false;
+  if (deadline.hasPassed()) {
+    update.out_of_time = true;
+    return false;
+  }
+  const Skeleton::Outcome outcome = hierarchy_.solve(graph_, deadline.left_s());
+  update.iterations += outcome.iterations;
+  update.moved_everything = true;
+  update.out_of_time = update.out_of_time || outcome.out_of_time;
+  if (!outcome.failure.empty()) {
+    update.failure = outcome.failure;
+    return false;
+  }
+  if (!outcome.out_of_time) hierarchy_.settle();
+  return true;
+}
+
+PoseGraphUpdate PoseGraph::Impl::optimize() {
+  const Deadline deadline(config_.time_budget_s);
+  PoseGraphUpdate update;
+  const int count = static_cast<int>(graph_.submaps.size());
+  if (count == 0) return update;
+  solveWindow(range(std::max(0, count - config_.window_submaps), count), config_.window_iterations,
+              deadline.left_s(kWindowShare), update);
+  hierarchy_.synchronize(graph_);
+  for (; in_hierarchy_ < count; ++in_hierarchy_) hierarchy_.extend(graph_, review_, in_hierarchy_);
+  review_.decide(graph_);
+  closeLoops(deadline, update);
+  for (int i = 0; i < config_.repair_windows && !deadline.hasPassed(); ++i) {
+    const std::vector<int> bent = hierarchy_.takeBentPiece(graph_);
+    if (bent.empty()) break;
+    solveWindow(bent, kRepairIterations, deadline.left_s(), update);
+  }
+  update.out_of_time = update.out_of_time || deadline.hasPassed();
+  reportChanges(update);
+  return update;
+}
+
+/// Lets new loop closures act on the whole drive.
+void PoseGraph::Impl::closeLoops(const Deadline& deadline, PoseGraphUpdate& update) {
+  const bool is_solved = solveGlobally(deadline, update);
+  const int count = static_cast<int>(graph_.submaps.size());
+  const bool is_small = count <= config_.whole_submaps && !deadline.hasPassed();
+  if (update.failure.empty() && (is_solved || hierarchy_.hasNews()) && is_small) {
+    if (solveWindow(range(0, count), config_.window_iterations, deadline.left_s(), update))
+      hierarchy_.finishWhole(graph_);
+    hierarchy_.synchronize(graph_);
+    update.moved_everything = true;
+  }
+  if (!is_solved || hierarchy_.isPending()) return;
+  review_.compareWithEstimate(graph_, [this](int loop) { return hierarchy_.gap(graph_, loop); });
+  solveGlobally(deadline, update);  // if that switched any loop closure
+}
+
+Subgraph PoseGraph::Impl::whole(GraphState& graph) const {
+  return Subgraph(graph, range(0, static_cast<int>(graph.submaps.size())), Surroundings::kHeld, config_);
+}
+
+PoseGraphUpdate PoseGraph::Impl::optimizeFully() {
+  PoseGraphUpdate update = optimize();
+  if (graph_.submaps.empty()) return update;
+  const Subgraph::Outcome outcome = whole(graph_).optimize(kFullIterations, 0.0);
+  update.iterations += outcome.iterations;
+  update.moved_everything = true;
+  if (!outcome.failure.empty()) update.failure = outcome.failure;
+  if (outcome.failure.empty()) hierarchy_.finishWhole(graph_);
+  reportChanges(update);
+  return update;
+}
+
+void PoseGraph::Impl::reportChanges(PoseGraphUpdate& update) {
+  for (int i = 0; i < static_cast<int>(graph_.loops.size()); ++i) {
+    const LoopState3& loop = graph_.loops[i];
+    const bool is_new = i >= static_cast<int>(reported_.size());
+    if (is_new) reported_.push_back(loop.state);
+    if (!is_new && reported_[i] == loop.state) continue;
+    reported_[i] = loop.state;
+    update.loop_changes.push_back({i, loop.state, mahalanobisSq(graph_, loop.constraint)});
+  }
+}
+
+std::vector<LoopDecision> PoseGraph::Impl::decisions() const {
+  std::vector<LoopDecision> result;
+  for (int i = 0; i < static_cast<int>(graph_.loops.size()); ++i) {
+    result.push_back({i, graph_.loops[i].state, mahalanobisSq(graph_, graph_.loops[i].constraint)});
+  }
+  return result;
+}
+
+PoseGraph::PoseGraph(const PoseGraphConfig& config) {
+  check(config);
+  impl_ = std::make_unique<Impl>(config);
+}
+PoseGraph::~PoseGraph() = default;
+PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
+PoseGraph& PoseGraph::operator=(PoseGraph&&) noexcept = default;
+
+int PoseGraph::addSubmap(const SubmapNode& submap) {
+  return impl_->addSubmap(submap);
+}
+int PoseGraph::addLoopClosure(const LoopConstraint& loop) {
+  return impl_->addLoopClosure(loop);
+}
+void PoseGraph::addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov) {
+  impl_->addPrior(submap, T_world_submap, cov);
+}
+PoseGraphUpdate PoseGraph::optimize() {
+  return impl_->optimize();
+}
+PoseGraphUpdate PoseGraph::optimizeFully() {
+  return impl_->optimizeFully();
+}
+int PoseGraph::submaps() const {
+  return static_cast<int>(impl_->graph_.submaps.size());
+}
+
+std::vector<Pose> PoseGraph::poses() const {
+  std::vector<Pose> result;
+  for (const SubmapState& submap : impl_->graph_.submaps) result.push_back(submap.pose());
+  return result;
+}
+
+Pose PoseGraph::pose(int submap) const {
+  require(submap >= 0 && submap < submaps(), "there is no such submap");
+  return impl_->graph_.submaps[submap].pose();
+}
+
+std::optional<Eigen::Vector3d> PoseGraph::landmark(std::int64_t id) const {
+  const auto found = impl_->graph_.landmarks.find(id);
+  if (found == impl_->graph_.landmarks.end()) return std::nullopt;
+  return impl_->graph_.landmarkInWorld(found->second);
+}
+
+std::vector<LoopDecision> PoseGraph::loopDecisions() const {
+  return impl_->decisions();
+}
+
+double PoseGraph::cost() const {
+  return submaps() == 0 ? 0.0 : impl_->whole(impl_->graph_).cost();
+}
+
+std::optional<PoseCov> PoseGraph::poseCovariance(int submap) const {
+  require(submap >= 0 && submap < submaps(), "there is no such submap");
+  if (submap == 0) return PoseCov::Zero();
+  const auto step_cov = impl_->whole(impl_->graph_).poseStepCovariance(submap);
+  if (!step_cov) return std::nullopt;
+  return errorCov(pose(submap), *step_cov);
+}
+
+std::optional<Eigen::Matrix3d> PoseGraph::landmarkCovariance(std::int64_t id) const {
+  if (submaps() == 0) return std::nullopt;
+  const auto cov = impl_->whole(impl_->graph_).landmarkCovariance(id);
+  if (!cov) return std::nullopt;
+  return Eigen::Matrix3d(*cov);
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/graph/pose_graph.h"
+
+namespace semantic_mht_slam {
+
+/// What `PoseGraph` refuses: throws std::invalid_argument with `message` unless `condition` holds.
+inline void require(bool condition, const char* message) {
+  if (!condition) throw std::invalid_argument(std::string("PoseGraph: ") + message);
+}
+
+inline bool isCovariance6(const PoseCov& cov) {
+  if (!cov.allFinite() || !cov.isApprox(cov.transpose(), 1e-9)) return false;
+  return cov.llt().info() == Eigen::Success;
+}
+
+inline void check(const SubmapNode& submap, bool is_first) {
+  require(submap.T_previous_submap.isValid(), "odometry is not a finite pose");
+  require(is_first || isCovariance6(submap.odometry_cov), "odometry covariance is not positive definite");
+  std::vector<std::int64_t> ids;
+  for (const LandmarkSighting& sighting : submap.sightings) {
+    require(sighting.position_m.allFinite(), "a landmark position is not finite");
+    require(isCovariance(sighting.cov_m2), "a landmark covariance is not positive definite");
+    ids.push_back(sighting.landmark);
+  }
+  std::sort(ids.begin(), ids.end());
+  require(std::adjacent_find(ids.begin(), ids.end()) == ids.end(), "a landmark occurs twice in a submap");
+}
+
+inline void check(const PoseGraphConfig& config) {
+  require(config.loop_cauchy_scale > 0.0 && config.landmark_cauchy_scale > 0.0, "a Cauchy scale is not positive");
+  require(config.window_submaps >= 1 && config.chunk_submaps >= 2, "window or chunk too small");
+  require(config.window_iterations >= 1 && config.global_iterations >= 1, "iterations below 1");
+  require(config.repair_windows >= 0 && config.whole_submaps >= 0 && config.compared_loops >= 1, "negative count");
+  require(config.loop_gate > 0.0 && config.odometry_cov_scale >= 1.0 && config.time_budget_s >= 0.0, "out of range");
+}
+
+}  // namespace semantic_mht_slam

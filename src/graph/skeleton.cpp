@@ -1,0 +1,117 @@
+#include "skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <ceres/solver.h>
+#include <ceres/types.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+ceres::Problem::Options problemOptions() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  keepManifoldOwnership(options);
+  options.enable_fast_removal = true;
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
+}  // namespace
+
+Skeleton::Skeleton(double cauchy_scale) : loss_(cauchy_scale), problem_(problemOptions()) {
+  problem_.AddParameterBlock(world_.data(), kPoseBlock);
+  problem_.SetParameterBlockConstant(world_.data());
+}
+
+int Skeleton::addNode(const Pose& pose) {
+  double* block = blocks_.emplace_back().data();
+  writeBlock(pose, block);
+  problem_.AddParameterBlock(block, kPoseBlock);
+  setManifold(problem_, block, &manifold_);
+  if (nodes() == 1) problem_.SetParameterBlockConstant(block);
+  return nodes() - 1;
+}
+
+Pose Skeleton::pose(int node) const {
+  Pose pose;
+  readBlock(blocks_[node].data(), pose);
+  return pose;
+}
+
+void Skeleton::setPose(int node, const Pose& pose) {
+  writeBlock(pose, blocks_[node].data());
+}
+
+int Skeleton::addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov) {
+  Link& link = links_.emplace_back();
+  link.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
+  link.from = from;
+  link.to = to;
+  return static_cast<int>(links_.size()) - 1;
+}
+
+double Skeleton::mahalanobisSq(int index) const {
+  const Link& link = links_[index];
+  const double* blocks[] = {block(link.from), block(link.to)};
+  Vector6d whitened;
+  link.cost->Evaluate(blocks, whitened.data(), nullptr);
+  return whitened.squaredNorm();
+}
+
+void Skeleton::setActive(int index, bool is_active) {
+  Link& link = links_[index];
+  if (is_active == (link.id != nullptr)) return;
+  if (is_active) {
+    link.id =
+        problem_.AddResidualBlock(link.cost.get(), link.is_robust ? &loss_ : nullptr, block(link.from), block(link.to));
+  } else {
+    problem_.RemoveResidualBlock(link.id);
+    link.id = nullptr;
+  }
+}
+
+void Skeleton::setRobust(int index, bool is_robust) {
+  Link& link = links_[index];
+  if (link.is_robust == is_robust) return;
+  link.is_robust = is_robust;
+  if (link.id == nullptr) return;
+  setActive(index, false);
+  setActive(index, true);
+}
+
+Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
+  const auto backup = blocks_;
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  // Half the time of CHOLMOD on a few hundred nodes (docs/pose_graph.md).
+  if (ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::EIGEN_SPARSE)) {
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  }
+  options.initial_trust_region_radius = 1e16;
+  options.jacobi_scaling = false;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = 1e-2;  // what is left is done with the next loop closures
+  options.logging_type = ceres::SILENT;
+  if (max_seconds > 0.0) options.max_solver_time_in_seconds = max_seconds;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem_, &summary);
+  Outcome outcome;
+  outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  outcome.converged = summary.termination_type == ceres::CONVERGENCE;
+  outcome.out_of_time = summary.termination_type == ceres::NO_CONVERGENCE && outcome.iterations < max_iterations;
+  bool is_finite = std::isfinite(summary.final_cost);
+  for (const auto& block : blocks_) {
+    for (const double value : block) is_finite = is_finite && std::isfinite(value);
+  }
+  if (!summary.IsSolutionUsable()) outcome.failure = "the solver failed: " + summary.message;
+  if (!is_finite) outcome.failure = "the solution is not finite";
+  // Copied element by element: Ceres holds the addresses.
+  if (!outcome.failure.empty()) std::copy(backup.begin(), backup.end(), blocks_.begin());
+  return outcome;
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+
+#include "semantic_mht_slam/graph/pose_graph.h"
+
+#include "ceres_manifold.h"
+#include "cost_functions.h"
+
+namespace semantic_mht_slam {
+
+/// Coarse pose graph: a node for the first submap of every chunk and condensed factors between them. The Ceres problem
+/// is kept from call to call; links are added and taken out in place.
+class Skeleton {
+ public:
+  explicit Skeleton(double cauchy_scale);
+
+  int addNode(const Pose& pose);
+  int nodes() const { return static_cast<int>(blocks_.size()); }
+  Pose pose(int node) const;
+  void setPose(int node, const Pose& pose);
+
+  /// Joins two different nodes, or a node with the world (`kWorld` as `from`), without robust loss. Returns the number
+  /// of the link, which is not active yet.
+  int addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov);
+  void setActive(int link, bool is_active);
+  bool isActive(int link) const { return links_[link].id != nullptr; }
+
+  /// A link that is far from the estimate when it comes must pull with its full weight: under a robust loss it would
+  /// hardly move anything. It gets its loss once it fits.
+  void setRobust(int link, bool is_robust);
+  static constexpr int kWorld = -1;
+
+  /// Mahalanobis distance squared of a link from the estimate.
+  double mahalanobisSq(int link) const;
+
+  struct Outcome {
+    std::string failure;  ///< empty, or why nothing was changed
+    int iterations = 0;
+    bool converged = false;
+    bool out_of_time = false;  ///< stopped by the clock
+  };
+  Outcome optimize(int max_iterations, double max_seconds);
+
+ private:
+  struct Link {
+    std::unique_ptr<RelativePose3Cost> cost;
+    int from;
+    int to;
+    bool is_robust = false;
+    ceres::ResidualBlockId id = nullptr;  ///< none: not active
+  };
+
+  const double* block(int node) const { return node == kWorld ? world_.data() : blocks_[node].data(); }
+  double* block(int node) { return node == kWorld ? world_.data() : blocks_[node].data(); }
+
+  std::deque<std::array<double, kPoseBlock>> blocks_;
+  std::deque<Link> links_;
+  std::array<double, kPoseBlock> world_{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  ceres::CauchyLoss loss_;
+  PoseManifold manifold_;
+  ceres::Problem problem_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,237 @@
+#include "subgraph.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/SparseCholesky>
+#include <ceres/crs_matrix.h>
+#include <ceres/solver.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+ceres::Problem::Options problemOptions() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  keepManifoldOwnership(options);
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
+/// Sightings of one landmark from held submaps that a subgraph takes at most. Without a limit, every call would grow
+/// with the number of times that a street was driven.
+constexpr std::size_t kMostHeldSightings = 4;
+
+/// At most `count` >= 2 items, the first, the last and others evenly between them.
+template <class Item>
+std::vector<Item> spread(const std::vector<Item>& items, std::size_t count) {
+  if (items.size() <= count) return items;
+  std::vector<Item> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(items[i * (items.size() - 1) / (count - 1)]);
+  return chosen;
+}
+
+/// J^T J of a Jacobian in Ceres's row storage.
+Eigen::SparseMatrix<double> normalMatrix(const ceres::CRSMatrix& jacobian) {
+  const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> rows(
+      jacobian.num_rows, jacobian.num_cols, static_cast<int>(jacobian.values.size()), jacobian.rows.data(),
+      jacobian.cols.data(), jacobian.values.data());
+  const Eigen::SparseMatrix<double> columns = rows;
+  return columns.transpose() * columns;
+}
+
+}  // namespace
+
+Subgraph::Subgraph(GraphState& graph, std::vector<int> submaps, Surroundings surroundings,
+                   const PoseGraphConfig& config)
+    : graph_(graph),
+      submaps_(std::move(submaps)),
+      surroundings_(surroundings),
+      held_(surroundings == Surroundings::kIgnored ? submaps_.front() : 0),
+      loop_loss_(config.loop_cauchy_scale),
+      landmark_loss_(config.landmark_cauchy_scale),
+      problem_(problemOptions()) {
+  for (const int submap : submaps_) addPose(submap);
+  for (const int submap : submaps_) addSubmapFactors(submap);
+  for (const int submap : submaps_) {
+    for (const std::int64_t id : graph_.submaps[submap].landmarks) {
+      if (landmarks_.count(id) == 0) addLandmark(id);
+    }
+  }
+}
+
+bool Subgraph::isInside(int submap) const {
+  return std::binary_search(submaps_.begin(), submaps_.end(), submap);
+}
+
+bool Subgraph::isVariable(int submap) const {
+  return submap != held_ && isInside(submap);
+}
+
+/// Adds the block of a submap once; submaps from outside are held.
+void Subgraph::addPose(int submap) {
+  double* block = graph_.submaps[submap].block.data();
+  if (problem_.HasParameterBlock(block)) return;
+  problem_.AddParameterBlock(block, kPoseBlock);
+  setManifold(problem_, block, &manifold_);
+  if (!isVariable(submap)) problem_.SetParameterBlockConstant(block);
+}
+
+void Subgraph::add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to) {
+  if (problem_.IsParameterBlockConstant(from) && problem_.IsParameterBlockConstant(to)) return;
+  problem_.AddResidualBlock(cost, loss, from, to);
+}
+
+/// Odometry from the submap before, odometry to one behind that is outside, loop closures, priors.
+void Subgraph::addSubmapFactors(int submap) {
+  SubmapState& state = graph_.submaps[submap];
+  const bool take_outside = surroundings_ == Surroundings::kHeld;
+  const auto join = [&](ceres::CostFunction* cost, ceres::LossFunction* loss, int from, int to) {
+    addPose(from);
+    addPose(to);
+    add(cost, loss, graph_.submaps[from].block.data(), graph_.submaps[to].block.data());
+  };
+  if (submap > 0 && (isInside(submap - 1) || take_outside)) {
+    join(state.odometry_cost.get(), nullptr, submap - 1, submap);
+  }
+  const int next = submap + 1;
+  if (take_outside && next < static_cast<int>(graph_.submaps.size()) && !isInside(next)) {
+    join(graph_.submaps[next].odometry_cost.get(), nullptr, submap, next);
+  }
+  if (!take_outside) return;
+  for (const int index : state.loops) {
+    const LoopState3& loop = graph_.loops[index];
+    if (loop.state != LoopState::kAccepted || !loop.is_reviewed) continue;
+    const int other = loop.constraint.from == submap ? loop.constraint.to : loop.constraint.from;
+    if (isInside(other) && other < submap) continue;  // was added there
+    join(loop.cost.get(), &loop_loss_, loop.constraint.from, loop.constraint.to);
+  }
+  for (const PriorFactor& prior : state.priors) {
+    if (!problem_.HasParameterBlock(world_.data())) {
+      problem_.AddParameterBlock(world_.data(), kPoseBlock);
+      problem_.SetParameterBlockConstant(world_.data());
+    }
+    add(prior.cost.get(), nullptr, world_.data(), state.block.data());
+  }
+}
+
+void Subgraph::addLandmark(std::int64_t id) {
+  LandmarkState& landmark = graph_.landmarks.at(id);
+  double* block = landmarks_.emplace(id, graph_.landmarkInWorld(landmark)).first->second.data();
+  problem_.AddParameterBlock(block, 3);
+  const auto addSighting = [&](const SightingFactor& sighting) {
+    problem_.AddResidualBlock(sighting.cost.get(), &landmark_loss_, graph_.submaps[sighting.submap].block.data(),
+                              block);
+  };
+  std::vector<const SightingFactor*> outside;
+  for (const SightingFactor& sighting : landmark.sightings) {
+    if (isInside(sighting.submap)) {
+      addSighting(sighting);
+    } else if (surroundings_ == Surroundings::kHeld) {
+      outside.push_back(&sighting);
+    }
+  }
+  for (const SightingFactor* sighting : spread(outside, kMostHeldSightings)) {
+    addPose(sighting->submap);
+    addSighting(*sighting);
+  }
+}
+
+std::vector<double> Subgraph::snapshot() const {
+  std::vector<double> values;
+  for (const int submap : submaps_) {
+    const auto& block = graph_.submaps[submap].block;
+    values.insert(values.end(), block.begin(), block.end());
+  }
+  return values;
+}
+
+void Subgraph::restore(const std::vector<double>& backup) {
+  auto value = backup.begin();
+  for (const int submap : submaps_) {
+    std::copy_n(value, kPoseBlock, graph_.submaps[submap].block.begin());
+    value += kPoseBlock;
+  }
+}
+
+/// Landmarks are kept in the frame of the submap that saw them first.
+void Subgraph::storeLandmarks() {
+  for (const auto& [id, position_m] : landmarks_) {
+    LandmarkState& landmark = graph_.landmarks.at(id);
+    landmark.position_m = graph_.submaps[landmark.anchor].pose().inverse() * position_m;
+  }
+}
+
+Subgraph::Outcome Subgraph::optimize(int max_iterations, double max_seconds) {
+  const std::vector<double> backup = snapshot();
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.initial_trust_region_radius = 1e16;
+  options.jacobi_scaling = false;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = 1e-4;
+  options.logging_type = ceres::SILENT;
+  if (max_seconds > 0.0) options.max_solver_time_in_seconds = max_seconds;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem_, &summary);
+  Outcome outcome;
+  outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  outcome.out_of_time = summary.termination_type == ceres::NO_CONVERGENCE && outcome.iterations < max_iterations;
+  const std::vector<double> result = snapshot();
+  const bool is_finite = std::all_of(result.begin(), result.end(), [](double value) { return std::isfinite(value); });
+  if (!summary.IsSolutionUsable()) outcome.failure = "the solver failed: " + summary.message;
+  if (!is_finite || !std::isfinite(summary.final_cost)) outcome.failure = "the solution is not finite";
+  if (outcome.failure.empty()) {
+    storeLandmarks();
+  } else {
+    restore(backup);
+  }
+  return outcome;
+}
+
+double Subgraph::cost() {
+  ceres::Problem::EvaluateOptions options;
+  options.apply_loss_function = false;
+  double cost = 0.0;
+  problem_.Evaluate(options, &cost, nullptr, nullptr, nullptr);
+  return cost;
+}
+
+std::optional<Eigen::MatrixXd> Subgraph::covarianceOf(const double* block, int size) {
+  ceres::Problem::EvaluateOptions options;
+  int first = 0;
+  int columns = 0;
+  const auto take = [&](double* candidate, int step_size) {
+    if (candidate == block) first = columns;
+    options.parameter_blocks.push_back(candidate);
+    columns += step_size;
+  };
+  for (const int submap : submaps_) {
+    if (isVariable(submap)) take(graph_.submaps[submap].block.data(), 6);
+  }
+  for (auto& [id, position_m] : landmarks_) take(position_m.data(), 3);
+  ceres::CRSMatrix jacobian;
+  if (!problem_.Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return std::nullopt;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(normalMatrix(jacobian));
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) return std::nullopt;
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(columns, size);
+  unit.middleRows(first, size).setIdentity();
+  Eigen::MatrixXd covariance = factor.solve(unit).middleRows(first, size);
+  covariance = 0.5 * (covariance + covariance.transpose()).eval();
+  if (!covariance.allFinite()) return std::nullopt;
+  return covariance;
+}
+
+std::optional<Eigen::MatrixXd> Subgraph::poseStepCovariance(int submap) {
+  if (!isVariable(submap)) return std::nullopt;
+  return covarianceOf(graph_.submaps[submap].block.data(), 6);
+}
+
+std::optional<Eigen::MatrixXd> Subgraph::landmarkCovariance(std::int64_t id) {
+  const auto found = landmarks_.find(id);
+  if (found == landmarks_.end()) return std::nullopt;
+  return covarianceOf(found->second.data(), 3);
+}
+
+}  // namespace semantic_mht_slam

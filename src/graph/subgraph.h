@@ -1,0 +1,74 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/SparseCore>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+
+#include "ceres_manifold.h"
+#include "graph_state.h"
+
+namespace semantic_mht_slam {
+
+/// Which factors a subgraph takes beside those among its own submaps.
+enum class Surroundings {
+  kHeld,     ///< factors to other submaps count, with the other submap held: for optimising in place; of sightings of
+             ///< one landmark from other submaps a few
+  kIgnored,  ///< only factors inside: for what the subgraph alone knows about its own shape
+};
+
+/// Some submaps of a graph and all landmarks that they saw, as a problem of its own. The cost functions are lent by the
+/// graph, so that setting one up costs a few microseconds a factor, a tenth of one iteration.
+class Subgraph {
+ public:
+  /// `submaps` ascending, without duplicates. The first submap of the graph is always held; with kIgnored the first
+  /// submap of the subgraph is.
+  Subgraph(GraphState& graph, std::vector<int> submaps, Surroundings surroundings, const PoseGraphConfig& config);
+
+  struct Outcome {
+    std::string failure;  ///< empty, or why nothing was changed
+    int iterations = 0;
+    bool out_of_time = false;  ///< stopped by the clock; the result is the best estimate up to then
+  };
+
+  /// Optimises and writes the result into the graph. `max_seconds` 0: no limit; the iteration at work is finished.
+  Outcome optimize(int max_iterations, double max_seconds);
+
+  /// Half the squared whitened errors, without robust losses.
+  double cost();
+
+  /// Covariance of the 6 step coordinates (rotation, translation; see `PoseManifold`) of a variable submap, or of a
+  /// landmark's 3 coordinates; empty if the problem is singular.
+  std::optional<Eigen::MatrixXd> poseStepCovariance(int submap);
+  std::optional<Eigen::MatrixXd> landmarkCovariance(std::int64_t id);
+
+ private:
+  bool isVariable(int submap) const;
+  bool isInside(int submap) const;
+  void addPose(int submap);
+  void addSubmapFactors(int submap);
+  void addLandmark(std::int64_t id);
+  void add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to);
+  std::optional<Eigen::MatrixXd> covarianceOf(const double* block, int size);
+  void restore(const std::vector<double>& backup);
+  std::vector<double> snapshot() const;
+  void storeLandmarks();
+
+  GraphState& graph_;
+  std::vector<int> submaps_;
+  Surroundings surroundings_;
+  int held_;
+  std::map<std::int64_t, Eigen::Vector3d> landmarks_;  ///< positions in the world frame while this object lives
+  std::array<double, kPoseBlock> world_{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
+  ceres::CauchyLoss loop_loss_;
+  ceres::CauchyLoss landmark_loss_;
+  PoseManifold manifold_;
+  ceres::Problem problem_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,29 @@
+#include "semantic_mht_slam/map/landmark.h"
+
+#include <stdexcept>
+
+namespace semantic_mht_slam {
+
+ClassIndex MixtureLandmark::mostLikelyClass() const {
+  Eigen::Index best = 0;
+  class_probs.maxCoeff(&best);
+  return static_cast<ClassIndex>(best);
+}
+
+Gaussian3 moments(const std::vector<MixtureComponent>& components) {
+  if (components.empty()) throw std::invalid_argument("a mixture without components");
+  double weight = 0.0;
+  Gaussian3 result{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
+  for (const MixtureComponent& component : components) {
+    weight += component.weight;
+    result.mean_m += component.weight * component.position.mean_m;
+  }
+  result.mean_m /= weight;
+  for (const MixtureComponent& component : components) {
+    const Eigen::Vector3d d = component.position.mean_m - result.mean_m;
+    result.cov_m2 += component.weight / weight * (component.position.cov_m2 + d * d.transpose());
+  }
+  return result;
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,202 @@
+#include "alignment_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "semantic_mht_slam/common/gaussian.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kLogTwoPi = 1.8378770664093453;
+constexpr double kImpossible = -std::numeric_limits<double>::infinity();
+
+void require(bool is_fulfilled, const std::string& problem) {
+  if (!is_fulfilled) throw std::invalid_argument("alignJointly: " + problem);
+}
+
+void check(const std::vector<AlignmentPoint>& points, const std::string& kind, const ClassTable& classes) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::string name = kind + " " + std::to_string(i);
+    require(points[i].position_m.allFinite(), name + " is not finite");
+    require(isCovariance(points[i].cov_m2), name + " has no positive definite covariance");
+    require(points[i].class_index >= 0 && points[i].class_index < classes.size(), name + " has an unknown class");
+  }
+}
+
+void check(const AlignmentPrior& prior) {
+  require(prior.T_a_b.isValid(), "the prior is no pose");
+  for (const double stddev : {prior.stddev_xy_m, prior.stddev_z_m, prior.stddev_yaw_rad}) {
+    require(std::isfinite(stddev) && stddev > 0.0, "the prior has a deviation that is not positive");
+  }
+}
+
+/// Brings points into one order that depends on their values alone.
+void sortPoints(std::vector<LevelledPoint>& points) {
+  const auto key = [](const LevelledPoint& p) {
+    return std::make_tuple(p.class_index, p.position_m.x(), p.position_m.y(), p.position_m.z(), p.cov_m2(0, 0),
+                           p.cov_m2(1, 1), p.cov_m2(2, 2), p.cov_m2(0, 1), p.cov_m2(0, 2), p.cov_m2(1, 2));
+  };
+  std::sort(points.begin(), points.end(),
+            [&](const LevelledPoint& a, const LevelledPoint& b) { return key(a) < key(b); });
+}
+
+/// The points after p -> rotation * (p - origin).
+std::vector<LevelledPoint> levelled(const std::vector<AlignmentPoint>& points, const Eigen::Matrix3d& rotation,
+                                    const Eigen::Vector3d& origin_m) {
+  std::vector<LevelledPoint> result;
+  result.reserve(points.size());
+  for (const AlignmentPoint& point : points) {
+    const Eigen::Matrix3d cov_m2 = rotation * point.cov_m2 * rotation.transpose();
+    result.push_back({rotation * (point.position_m - origin_m), 0.5 * (cov_m2 + cov_m2.transpose()), point.class_index,
+                      static_cast<int>(result.size())});
+  }
+  sortPoints(result);
+  return result;
+}
+
+/// Landmarks of each class per cubic metre around where the detections of that class are expected. Counted there and
+/// not over the whole map, because objects stand in rows along streets and chance matches are as frequent as the rows
+/// are dense.
+std::vector<double> classDensities(const AlignmentProblem& problem, int class_count,
+                                   const JointAlignmentConfig& config) {
+  std::vector<int> detections(class_count, 0);
+  std::vector<int> neighbours(class_count, 0);
+  for (const LevelledPoint& detection : problem.detections) {
+    ++detections[detection.class_index];
+    for (const LevelledPoint& landmark : problem.landmarks) {
+      if (landmark.class_index != detection.class_index) continue;
+      const double distance_m = (landmark.position_m - detection.position_m).head<2>().norm();
+      if (distance_m < config.density_radius_m) ++neighbours[detection.class_index];
+    }
+  }
+  const double volume_m3 = M_PI * config.density_radius_m * config.density_radius_m * config.density_height_m;
+  std::vector<double> densities;
+  for (int c = 0; c < class_count; ++c) {
+    densities.push_back(std::max(1.0, neighbours[c] / std::max(1.0, 1.0 * detections[c])) / volume_m3);
+  }
+  return densities;
+}
+
+/// log P(seen | true) of two classes. Only classes that are both static or both movable are mistaken for each other.
+std::vector<std::vector<double>> logClassProbs(const ClassTable& classes, double confusion_prob) {
+  std::vector<std::vector<double>> result(classes.size(), std::vector<double>(classes.size(), kImpossible));
+  for (int truth = 0; truth < classes.size(); ++truth) {
+    int others = -1;
+    for (const ClassInfo& info : classes.all()) others += info.is_static == classes[truth].is_static;
+    for (int seen = 0; seen < classes.size(); ++seen) {
+      if (classes[seen].is_static != classes[truth].is_static) continue;
+      const double confused_prob = others > 0 ? confusion_prob : 0.0;
+      result[truth][seen] = std::log(seen == truth ? 1.0 - confused_prob : confused_prob / others);
+    }
+  }
+  return result;
+}
+
+bool hasLandmarkAround(const AlignmentProblem& problem, const LevelledPoint& detection, double radius_m) {
+  return std::any_of(problem.landmarks.begin(), problem.landmarks.end(), [&](const LevelledPoint& landmark) {
+    return (landmark.position_m - detection.position_m).head<2>().norm() < radius_m;
+  });
+}
+
+double largestHorizontalVariance(const Eigen::Matrix3d& cov_m2) {
+  const double mean = 0.5 * (cov_m2(0, 0) + cov_m2(1, 1));
+  return mean + std::hypot(0.5 * (cov_m2(0, 0) - cov_m2(1, 1)), cov_m2(0, 1));
+}
+
+/// What a detection at a given range adds to the covariance of the residual, apart from its own.
+Eigen::Matrix3d extraCov(const ClassInfo& landmark_class, double range_m, const JointAlignmentConfig& config) {
+  Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity() * (config.noise_floor_m * config.noise_floor_m);
+  if (landmark_class.transition == Transition::kGaussian) {
+    cov_m2.diagonal().array() += landmark_class.transition_stddev_m * landmark_class.transition_stddev_m;
+  }
+  cov_m2(2, 2) += std::pow(config.tilt_stddev_rad * range_m, 2);
+  return cov_m2;
+}
+
+/// Horizontal distance beyond which a match is no better than none, whatever the heading; negative if there is no such
+/// match. Bounds the density by det(A + B) >= det A + det B and the distance by the largest eigenvalues.
+double reach(const LevelledPoint& detection, const AlignmentCandidate& candidate) {
+  const double det = detection.cov_m2.determinant() + candidate.cov_m2.determinant();
+  const double log_peak_odds = candidate.log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(det));
+  if (log_peak_odds <= 0.0) return -1.0;
+  return std::sqrt(2.0 * log_peak_odds *
+                   (largestHorizontalVariance(detection.cov_m2) + largestHorizontalVariance(candidate.cov_m2)));
+}
+
+/// Whether some offset inside the window brings detection and landmark within reach.
+bool isInWindow(const LevelledPoint& detection, const LevelledPoint& landmark, double reach_m,
+                const Eigen::Vector4d& window) {
+  const Eigen::Vector3d gap_m = landmark.position_m - detection.position_m;
+  const double turn_m = window(3) * detection.position_m.head<2>().norm();
+  return std::abs(gap_m.x()) < window(0) + turn_m + reach_m && std::abs(gap_m.y()) < window(1) + turn_m + reach_m &&
+         std::abs(gap_m.z()) < window(2) + reach_m;
+}
+
+/// Landmarks that a detection may be; `log_odds` is what holds for all of them.
+std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem, const LevelledPoint& detection,
+                                               const ClassTable& classes, const JointAlignmentConfig& config,
+                                               double log_odds,
+                                               const std::vector<std::vector<double>>& log_class_probs) {
+  const double range_m = detection.position_m.head<2>().norm();
+  std::vector<AlignmentCandidate> candidates;
+  for (std::size_t l = 0; l < problem.landmarks.size(); ++l) {
+    const LevelledPoint& landmark = problem.landmarks[l];
+    const double log_class_prob = log_class_probs[landmark.class_index][detection.class_index];
+    if (log_class_prob == kImpossible) continue;
+    AlignmentCandidate candidate;
+    candidate.landmark = static_cast<int>(l);
+    candidate.is_same_class = landmark.class_index == detection.class_index;
+    candidate.log_odds = log_odds + log_class_prob;
+    candidate.cov_m2 = landmark.cov_m2 + extraCov(classes[landmark.class_index], range_m, config);
+    candidate.reach_m = reach(detection, candidate);
+    if (candidate.reach_m <= 0.0 || !isInWindow(detection, landmark, candidate.reach_m, problem.window)) continue;
+    candidates.push_back(candidate);
+  }
+  return candidates;
+}
+
+}  // namespace
+
+Eigen::Matrix3d headingRotation(double yaw_rad) {
+  return Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+AlignmentProblem makeAlignmentProblem(const std::vector<AlignmentPoint>& detections,
+                                      const std::vector<AlignmentPoint>& landmarks, const AlignmentPrior& prior,
+                                      const ClassTable& classes, const JointAlignmentConfig& config) {
+  check(detections, "detection", classes);
+  check(landmarks, "landmark", classes);
+  check(prior);
+  AlignmentProblem problem;
+  const Eigen::Matrix3d R_a_b = prior.T_a_b.rotation.toRotationMatrix();
+  problem.prior_heading_rad = std::atan2(R_a_b(1, 0), R_a_b(0, 0));
+  const Eigen::Matrix3d R_level_a = headingRotation(-problem.prior_heading_rad);
+  problem.detections = levelled(detections, R_level_a * R_a_b, Eigen::Vector3d::Zero());
+  problem.landmarks = levelled(landmarks, R_level_a, prior.T_a_b.translation_m);
+  problem.prior_stddev << prior.stddev_xy_m, prior.stddev_xy_m, prior.stddev_z_m, prior.stddev_yaw_rad;
+  problem.window = config.window_sigmas * problem.prior_stddev;
+  problem.window.head<3>() = problem.window.head<3>().cwiseMin(config.max_window_m);
+  problem.window(3) = std::min(problem.window(3), M_PI);
+
+  const std::vector<double> densities = classDensities(problem, classes.size(), config);
+  const std::vector<std::vector<double>> log_class_probs = logClassProbs(classes, config.confusion_prob);
+  for (const LevelledPoint& detection : problem.detections) {
+    const ClassInfo& info = classes[detection.class_index];
+    const double match_prob = info.is_static ? config.static_match_prob : config.movable_match_prob;
+    const double log_odds = std::log(match_prob / (1.0 - match_prob)) - std::log(densities[detection.class_index]);
+    problem.candidates.push_back(findCandidates(problem, detection, classes, config, log_odds, log_class_probs));
+    problem.is_static.push_back(info.is_static);
+    problem.is_covered.push_back(hasLandmarkAround(problem, detection, config.density_radius_m));
+  }
+  return problem;
+}
+
+}  // namespace semantic_mht_slam

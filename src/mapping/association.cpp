@@ -1,0 +1,237 @@
+#include "semantic_mht_slam/mapping/association.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "semantic_mht_slam/common/log_math.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kLogTwoPi = 1.8378770664093454836;
+
+/// Quantile of the chi-square distribution with 3 degrees of freedom, by bisection of its closed-form distribution
+/// function erf(sqrt(x/2)) - sqrt(2x/pi) exp(-x/2).
+double chiSquare3Quantile(double prob) {
+  double low = 0.0;
+  double high = 100.0;
+  for (int i = 0; i < 100; ++i) {
+    const double x = 0.5 * (low + high);
+    const double cdf = std::erf(std::sqrt(0.5 * x)) - std::sqrt(2.0 * x / M_PI) * std::exp(-0.5 * x);
+    (cdf < prob ? low : high) = x;
+  }
+  return 0.5 * (low + high);
+}
+
+double logPoisson(int count, double mean) {
+  return -mean + count * std::log(mean) - logFactorial(count);
+}
+
+/// Closed-form evaluation of a 3-dimensional Gaussian; false if the covariance is not positive definite.
+bool evaluateFast(const Eigen::Matrix3d& cov, const Eigen::Vector3d& d, double& mahalanobis_sq, double& log_density) {
+  const double a = cov(0, 0);
+  const double b = cov(1, 0);
+  const double c = cov(2, 0);
+  const double l00 = std::sqrt(a);
+  if (!(a > 0.0)) return false;
+  const double l10 = b / l00;
+  const double l20 = c / l00;
+  const double m = cov(1, 1) - l10 * l10;
+  if (!(m > 0.0)) return false;
+  const double l11 = std::sqrt(m);
+  const double l21 = (cov(2, 1) - l20 * l10) / l11;
+  const double n = cov(2, 2) - l20 * l20 - l21 * l21;
+  if (!(n > 0.0)) return false;
+  const double y0 = d.x() / l00;
+  const double y1 = (d.y() - l10 * y0) / l11;
+  const double y2_numerator = d.z() - l20 * y0 - l21 * y1;
+  mahalanobis_sq = y0 * y0 + y1 * y1 + y2_numerator * y2_numerator / n;
+  log_density = -0.5 * (mahalanobis_sq + std::log(a * m * n)) - 1.5 * kLogTwoPi;
+  return true;
+}
+
+}  // namespace
+
+const Candidate* AssociationProblem::candidate(int measurement, int landmark) const {
+  for (const Candidate& candidate : gated[static_cast<std::size_t>(measurement)]) {
+    if (candidate.landmark == landmark) return &candidate;
+  }
+  return nullptr;
+}
+
+AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable& classes)
+    : config_(config),
+      class_count_(classes.size()),
+      log_map_volume_(std::log(config.association.map_volume_m3)),
+      gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
+  if (class_count_ > kMaxClasses) throw std::invalid_argument("more classes than a landmark can hold");
+  const bool is_delta = config_.association.class_model == ClassModel::kDelta;
+  const double wrong = is_delta || class_count_ == 1 ? 0.0 : config_.association.confusion_prob;
+  class_likelihood_ =
+      Eigen::ArrayXXd::Constant(class_count_, class_count_, class_count_ > 1 ? wrong / (class_count_ - 1) : 0.0);
+  class_likelihood_.matrix().diagonal().setConstant(1.0 - wrong);
+  for (const ClassInfo& info : classes.all()) {
+    log_class_prior_.push_back(config_.semantics ? std::log(info.prior_prob) : 0.0);
+    const double stddev = info.transition == Transition::kGaussian ? info.transition_stddev_m : 0.0;
+    transition_variance_m2_.push_back(stddev * stddev);
+  }
+}
+
+double AssociationModel::logClassLikelihood(ClassIndex detected, const ClassProbs& probs) const {
+  if (!config_.semantics) return -std::log(static_cast<double>(class_count_));
+  return std::log((class_likelihood_.row(detected).transpose() * probs).sum());
+}
+
+ClassProbs AssociationModel::updatedClassProbs(const ClassProbs& probs, ClassIndex detected) const {
+  ClassProbs updated = probs * class_likelihood_.row(detected).transpose();
+  const double sum = updated.sum();
+  return sum > 0.0 ? ClassProbs(updated / sum) : probs;
+}
+
+ClassProbs AssociationModel::initialClassProbs(ClassIndex detected) const {
+  return updatedClassProbs(ClassProbs::Constant(class_count_, 1.0 / class_count_), detected);
+}
+
+double AssociationModel::logAssignmentPrior(int new_landmarks, int false_positives, int measurements) const {
+  return logFactorial(new_landmarks) + logFactorial(false_positives) - logFactorial(measurements) +
+         logPoisson(new_landmarks, config_.association.new_density) +
+         logPoisson(false_positives, config_.association.false_positive_density);
+}
+
+double AssociationModel::logCountPrior(int observations) const {
+  const int count = std::clamp(observations, 1, config_.association.count_prior_cap);
+  switch (config_.association.count_prior) {
+    case CountPrior::kNone:
+      return 0.0;
+    case CountPrior::kLinear:
+      return std::log(static_cast<double>(count));
+    case CountPrior::kExponential:
+      return static_cast<double>(count);
+  }
+  throw std::logic_error("unknown count prior");
+}
+
+bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
+                                       const Eigen::Vector3d& d, Candidate& candidate, double& log_density) const {
+  if (!evaluateFast(cov, d, candidate.mahalanobis_sq, log_density)) return false;
+  const double outlier_prob = config_.association.outlier_prob;
+  if (outlier_prob == 0.0) return true;
+  Eigen::Matrix3d wide = cov;
+  wide.diagonal() += outlier_variance_m2;
+  double wide_mahalanobis_sq = 0.0;
+  double log_wide = 0.0;
+  if (!evaluateFast(wide, d, wide_mahalanobis_sq, log_wide)) return false;
+  const double inlier = std::log1p(-outlier_prob) + log_density;
+  const double outlier = std::log(outlier_prob) + log_wide;
+  candidate.is_outlier = outlier > inlier;
+  candidate.mahalanobis_sq = wide_mahalanobis_sq;
+  log_density = std::max(inlier, outlier) + std::log1p(std::exp(-std::abs(inlier - outlier)));
+  return true;
+}
+
+void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& measurement,
+                                         double driven_m, std::vector<Candidate>& candidates) const {
+  candidates.clear();
+  const double max_gate_m = config_.association.max_gate_m;
+  for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
+    const TrackedLandmark& landmark = *hypothesis.landmarks[j];
+    const Eigen::Vector3d d = measurement.position_m - landmark.position.mean_m;
+    if (std::abs(d.x()) > max_gate_m || std::abs(d.y()) > max_gate_m) continue;
+    const double log_class = logClassLikelihood(measurement.class_index, landmark.class_probs);
+    if (!std::isfinite(log_class)) continue;
+    Eigen::Matrix3d cov = landmark.position.cov_m2 + measurement.cov_m2;
+    cov.diagonal().head<2>().array() += measurement.wander_variance_per_m * (driven_m - landmark.updated_at_m);
+    if (landmark.is_from_earlier_submap) {
+      Eigen::Index most_likely = 0;
+      landmark.class_probs.maxCoeff(&most_likely);
+      cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(most_likely)];
+    }
+    Candidate candidate;
+    double log_density = 0.0;
+    if (!evaluateMixture(cov, measurement.outlier_variance_m2, d, candidate, log_density)) continue;
+    if (candidate.mahalanobis_sq > gate_mahalanobis_sq_) continue;
+    candidate.landmark = static_cast<int>(j);
+    candidate.log_likelihood = log_density + log_class;
+    candidates.push_back(candidate);
+  }
+}
+
+void AssociationModel::formulate(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                                 double driven_m, AssociationProblem& problem) const {
+  problem.landmarks = static_cast<int>(hypothesis.landmarks.size());
+  problem.measurements = static_cast<int>(measurements.size());
+  problem.gated.resize(measurements.size());
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    collectCandidates(hypothesis, measurements[i], driven_m, problem.gated[i]);
+  }
+  problem.costs.clear(problem.landmarks + 2 * problem.measurements);
+  switch (config_.estimator) {
+    case Estimator::kDpmhm:
+      return addDirichletCosts(hypothesis, problem);
+    case Estimator::kMhm:
+      return addLikelihoodCosts(problem);
+    case Estimator::kUkf:
+      return addDistanceCosts(hypothesis, measurements, problem);
+  }
+}
+
+void AssociationModel::addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const {
+  const AssociationConfig& association = config_.association;
+  const double log_class_uniform = -std::log(static_cast<double>(class_count_));
+  const double log_new = std::log(association.concentration) - log_map_volume_ + log_class_uniform;
+  const double false_positives =
+      hypothesis.false_positives > 0 ? hypothesis.false_positives : association.concentration;
+  for (int i = 0; i < problem.measurements; ++i) {
+    problem.costs.addRow();
+    double log_false =
+        std::log(association.false_positive_rate * false_positives) - log_map_volume_ + log_class_uniform;
+    for (const Candidate& candidate : problem.gated[static_cast<std::size_t>(i)]) {
+      const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(candidate.landmark)];
+      const double log_count = landmark.is_from_earlier_submap ? 0.0 : logCountPrior(landmark.observations);
+      problem.costs.add(candidate.landmark, -(log_count + candidate.log_likelihood));
+      // A false positive is unlikely where a landmark explains the measurement better than the uniform density does.
+      log_false -= std::max(0.0, candidate.log_likelihood - log_class_uniform + log_map_volume_);
+    }
+    problem.costs.add(problem.landmarks + i, -log_new);
+    problem.costs.add(problem.landmarks + problem.measurements + i, -log_false);
+  }
+}
+
+void AssociationModel::addLikelihoodCosts(AssociationProblem& problem) const {
+  const AssociationConfig& association = config_.association;
+  const double log_uniform = -log_map_volume_ - std::log(static_cast<double>(class_count_));
+  for (int i = 0; i < problem.measurements; ++i) {
+    problem.costs.addRow();
+    for (const Candidate& candidate : problem.gated[static_cast<std::size_t>(i)]) {
+      problem.costs.add(candidate.landmark, -candidate.log_likelihood);
+    }
+    problem.costs.add(problem.landmarks + i, -(std::log(association.new_density) + log_uniform));
+    problem.costs.add(problem.landmarks + problem.measurements + i,
+                      -(std::log(association.false_positive_density) + log_uniform));
+  }
+}
+
+void AssociationModel::addDistanceCosts(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                                        AssociationProblem& problem) const {
+  const double gate_m = config_.association.ukf_gate_m;
+  for (int i = 0; i < problem.measurements; ++i) {
+    const Measurement& measurement = measurements[static_cast<std::size_t>(i)];
+    std::vector<Candidate>& gated = problem.gated[static_cast<std::size_t>(i)];
+    gated.clear();
+    problem.costs.addRow();
+    for (int j = 0; j < problem.landmarks; ++j) {
+      const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(j)];
+      const double distance_m = (measurement.position_m - landmark.position.mean_m).norm();
+      Eigen::Index most_likely = 0;
+      landmark.class_probs.maxCoeff(&most_likely);
+      const bool same_class = !config_.semantics || most_likely == measurement.class_index;
+      if (distance_m > gate_m || !same_class) continue;
+      gated.push_back({j, 0.0, 0.0});
+      problem.costs.add(j, distance_m);
+    }
+    problem.costs.add(problem.landmarks + i, gate_m);  // no false positives: what has no neighbour is new
+  }
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,146 @@
+#include "semantic_mht_slam/mapping/detector_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kSmallest = 1e-4;
+constexpr double kBinRatio = 1.05;
+constexpr double kMedianToStddev = 1.4826;  // of |x|, x normal
+// |difference of two frames' horizontal residual|, Rayleigh distributed: median = stddev sqrt(2 log 2)
+constexpr double kRayleighMedian = 1.17741;
+
+int binOf(double value) {
+  return static_cast<int>(std::floor(std::log(value / kSmallest) / std::log(kBinRatio)));
+}
+
+/// Index of the nearest position of the same class; -1 if none is within `max_distance_m`.
+int nearest(const Eigen::Vector3d& position_m, ClassIndex class_index, const std::vector<Eigen::Vector3d>& positions_m,
+            const std::vector<ClassIndex>& classes, double max_distance_m) {
+  int best = -1;
+  double best_sq = max_distance_m * max_distance_m;
+  for (std::size_t i = 0; i < positions_m.size(); ++i) {
+    if (classes[i] != class_index) continue;
+    const double distance_sq = (positions_m[i] - position_m).squaredNorm();
+    if (distance_sq >= best_sq) continue;
+    best_sq = distance_sq;
+    best = static_cast<int>(i);
+  }
+  return best;
+}
+
+}  // namespace
+
+void describe(CalibrationConfig& config, Fields& fields) {
+  fields.add("enabled", config.enabled, "false: the class table's noise is used as it is (the paper).");
+  fields.add("prior_samples", config.prior_samples, "", {1, 100000},
+             "How many measurements the class table counts for.");
+  fields.add("lag_frames", config.lag_frames, "frames", {2, 100}, "Distance of the frames that show the wander.");
+  fields.add("max_distance", config.max_distance_m, "m", {0.1, 100.0}, "Neighbours further apart are not compared.");
+  fields.add("min_stddev", config.min_stddev_m, "m", {1e-3, 10.0}, "Noise is never taken to be below this.");
+}
+
+void RunningMedian::add(double value, int count) {
+  bins_[static_cast<std::size_t>(std::clamp(binOf(std::max(value, kSmallest)), 0, kBins - 1))] += count;
+  count_ += count;
+}
+
+double RunningMedian::median() const {
+  int below = 0;
+  int bin = 0;
+  while (bin + 1 < kBins && 2 * (below + bins_[static_cast<std::size_t>(bin)]) < count_) {
+    below += bins_[static_cast<std::size_t>(bin)];
+    ++bin;
+  }
+  return kSmallest * std::pow(kBinRatio, bin + 0.5);
+}
+
+DetectorCalibration::DetectorCalibration(const CalibrationConfig& config, const ClassTable& classes)
+    : config_(config), statistics_(static_cast<std::size_t>(classes.size())) {
+  const double to_median = std::sqrt(2.0) / kMedianToStddev;
+  for (int c = 0; c < classes.size(); ++c) {
+    const ClassInfo& info = classes[c];
+    ClassStatistics& statistics = statistics_[static_cast<std::size_t>(c)];
+    for (auto& directions : statistics.noise) {
+      directions[0].add(info.range_stddev_m * to_median, config.prior_samples);
+      directions[1].add(info.lateral_stddev_m * to_median, config.prior_samples);
+      directions[2].add(info.lateral_stddev_m * to_median, config.prior_samples);
+    }
+    statistics.wander.add(info.lateral_stddev_m * std::sqrt(2.0) * kRayleighMedian, config.prior_samples);
+    statistics.wander_distance_m.add(1.0, 1);
+  }
+}
+
+int DetectorCalibration::rangeBin(double range_m) {
+  return range_m < 15.0 ? 0 : range_m < 25.0 ? 1 : 2;
+}
+
+void DetectorCalibration::add(const Pose& T_odom_base, const Detections& detections) {
+  if (!config_.enabled) return;
+  PastFrame now;
+  now.T_odom_base = T_odom_base;
+  for (const Detection& detection : detections) {
+    now.positions_m.push_back(detection.position_m);
+    now.classes.push_back(detection.class_index);
+  }
+  if (!past_.empty()) compare(past_.back(), now, false);
+  if (static_cast<int>(past_.size()) == config_.lag_frames) {
+    compare(past_.front(), now, true);
+    past_.pop_front();
+  }
+  past_.push_back(std::move(now));
+}
+
+void DetectorCalibration::compare(const PastFrame& past, const PastFrame& now, bool is_lagged) {
+  const Pose T_now_past = now.T_odom_base.inverse() * past.T_odom_base;
+  const double driven_m = T_now_past.translation_m.norm();
+  if (is_lagged && driven_m < 1.0) return;  // at a stop nothing wanders
+  std::vector<Eigen::Vector3d> expected_m;
+  for (const Eigen::Vector3d& position_m : past.positions_m) expected_m.push_back(T_now_past * position_m);
+  for (std::size_t i = 0; i < now.positions_m.size(); ++i) {
+    const Eigen::Vector3d& position_m = now.positions_m[i];
+    const int j = nearest(position_m, now.classes[i], expected_m, past.classes, config_.max_distance_m);
+    if (j < 0) continue;
+    const auto k = static_cast<std::size_t>(j);
+    const int back = nearest(expected_m[k], now.classes[i], now.positions_m, now.classes, config_.max_distance_m);
+    if (back != static_cast<int>(i)) continue;
+    const Eigen::Vector3d residual_m = position_m - expected_m[k];
+    ClassStatistics& statistics = statistics_[static_cast<std::size_t>(now.classes[i])];
+    if (is_lagged) {
+      statistics.wander.add(residual_m.head<2>().norm());
+      statistics.wander_distance_m.add(driven_m);
+      continue;
+    }
+    const double range_m = position_m.head<2>().norm();
+    if (range_m < 1e-3) continue;
+    const Eigen::Vector2d ray = position_m.head<2>() / range_m;
+    auto& directions = statistics.noise[static_cast<std::size_t>(rangeBin(range_m))];
+    directions[0].add(std::abs(residual_m.head<2>().dot(ray)));
+    directions[1].add(std::abs(residual_m.y() * ray.x() - residual_m.x() * ray.y()));
+    directions[2].add(std::abs(residual_m.z()));
+  }
+}
+
+Eigen::Vector3d DetectorCalibration::noiseStddev(ClassIndex class_index, double range_m) const {
+  const auto& directions =
+      statistics_[static_cast<std::size_t>(class_index)].noise[static_cast<std::size_t>(rangeBin(range_m))];
+  Eigen::Vector3d stddev_m;
+  for (int i = 0; i < 3; ++i) {
+    stddev_m[i] = directions[static_cast<std::size_t>(i)].median() * kMedianToStddev / std::sqrt(2.0);
+  }
+  return stddev_m.cwiseMax(config_.min_stddev_m);
+}
+
+double DetectorCalibration::wanderVariancePerMetre(ClassIndex class_index) const {
+  if (!config_.enabled) return 0.0;
+  const ClassStatistics& statistics = statistics_[static_cast<std::size_t>(class_index)];
+  const double lagged_stddev_m = statistics.wander.median() / kRayleighMedian;
+  const Eigen::Vector3d white_m = noiseStddev(class_index, 20.0);
+  const double white_variance_m2 = white_m[0] * white_m[0] + white_m[1] * white_m[1];  // two frames, mean direction
+  const double added_m2 = lagged_stddev_m * lagged_stddev_m - white_variance_m2;
+  return std::max(0.0, added_m2) / statistics.wander_distance_m.median();
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,93 @@
+#include "semantic_mht_slam/mapping/fusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "semantic_mht_slam/common/log_math.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+struct Contribution {
+  double weight;
+  const TrackedLandmark* landmark;
+};
+
+/// Components of equal position are one.
+std::vector<MixtureComponent> makeComponents(const std::vector<Contribution>& contributions, double total) {
+  std::vector<MixtureComponent> components;
+  for (const auto& [weight, landmark] : contributions) {
+    const auto same =
+        std::find_if(components.begin(), components.end(), [&, tracked = landmark](const auto& component) {
+          return component.position.mean_m == tracked->position.mean_m &&
+                 component.position.cov_m2 == tracked->position.cov_m2;
+        });
+    if (same == components.end()) {
+      components.push_back({weight / total, landmark->position});
+    } else {
+      same->weight += weight / total;
+    }
+  }
+  std::stable_sort(components.begin(), components.end(),
+                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  return components;
+}
+
+MixtureLandmark fuse(LandmarkId id, const std::vector<Contribution>& contributions) {
+  MixtureLandmark fused;
+  fused.id = id;
+  double total = 0.0;
+  for (const Contribution& contribution : contributions) total += contribution.weight;
+  fused.components = makeComponents(contributions, total);
+  fused.position = moments(fused.components);
+  const TrackedLandmark& likeliest = *contributions.front().landmark;  // leaves come by falling weight
+  fused.class_probs = ClassProbs::Zero(likeliest.class_probs.size());
+  for (const auto& [weight, landmark] : contributions) {
+    fused.class_probs += weight / total * landmark->class_probs;
+    fused.existence_prob += weight * logistic(landmark->log_existence_odds);
+  }
+  fused.observations = likeliest.observations;
+  fused.first_submap = likeliest.first_submap;
+  fused.last_submap = likeliest.last_submap;
+  return fused;
+}
+
+}  // namespace
+
+std::vector<MixtureLandmark> fuseHypotheses(const std::vector<MapHypothesis>& leaves) {
+  std::map<LandmarkId, std::vector<Contribution>> contributions;
+  for (const MapHypothesis& leaf : leaves) {
+    for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+      contributions[landmark->id].push_back({std::exp(leaf.log_weight), landmark.get()});
+    }
+  }
+  std::vector<MixtureLandmark> fused;
+  for (const auto& [id, list] : contributions) fused.push_back(fuse(id, list));
+  return fused;
+}
+
+std::vector<FusedAssociations> fuseAssociations(const std::vector<MapHypothesis>& leaves) {
+  // Votes of a record count for its ancestors too; leaves share them, so each is visited once a leaf.
+  std::map<std::size_t, std::vector<std::map<LandmarkId, double>>> votes;
+  for (const MapHypothesis& leaf : leaves) {
+    const double weight = std::exp(leaf.log_weight);
+    for (const AssociationRecord* record = leaf.history.get(); record != nullptr; record = record->previous.get()) {
+      auto& frame = votes[record->frame];
+      frame.resize(record->landmark_of_measurement.size());
+      for (std::size_t i = 0; i < frame.size(); ++i) frame[i][record->landmark_of_measurement[i]] += weight;
+    }
+  }
+  std::vector<FusedAssociations> fused;
+  for (const auto& [frame, measurements] : votes) {
+    fused.push_back({frame, {}});
+    for (const auto& candidates : measurements) {
+      const auto best = std::max_element(candidates.begin(), candidates.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
+      fused.back().landmark_of_measurement.push_back(best->first);
+    }
+  }
+  return fused;
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,136 @@
+#include "semantic_mht_slam/mapping/mapper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "semantic_mht_slam/common/log_math.h"
+#include "semantic_mht_slam/mapping/fusion.h"
+
+namespace semantic_mht_slam {
+Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
+    : config_(config), classes_(classes), calibration_(config.calibration, classes), tree_(config, classes) {}
+
+Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
+  if (detection.cov_m2) return *detection.cov_m2;
+  const double range_m = detection.position_m.head<2>().norm();
+  const Eigen::Vector3d variance_m2 = calibration_.noiseStddev(detection.class_index, range_m).cwiseAbs2();
+  Eigen::Matrix3d cov = Eigen::Vector3d(variance_m2[1], variance_m2[1], variance_m2[2]).asDiagonal();
+  if (range_m > 0.0) {
+    const Eigen::Vector2d ray = detection.position_m.head<2>() / range_m;
+    cov.topLeftCorner<2, 2>() += (variance_m2[0] - variance_m2[1]) * ray * ray.transpose();
+  }
+  return cov;
+}
+
+Measurement Mapper::makeMeasurement(const Detection& detection) const {
+  Measurement measurement;
+  measurement.position_m = detection.position_m;
+  measurement.cov_m2 = detectorCov(detection);
+  const AssociationConfig& association = config_.association;
+  const double stddev_m = std::max(association.outlier_min_stddev_m,
+                                   association.outlier_factor * std::sqrt(measurement.cov_m2.diagonal().maxCoeff()));
+  measurement.outlier_variance_m2 = Eigen::Vector3d::Constant(stddev_m * stddev_m);
+  measurement.wander_variance_per_m = calibration_.wanderVariancePerMetre(detection.class_index);
+  measurement.class_index = detection.class_index;
+  measurement.row = detection.row;
+  return measurement;
+}
+
+std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_odom_base, const Detections& detections,
+                                  Rng& rng) {
+  std::optional<Submap> finished;
+  double step_m = 0.0;
+  if (is_open_) {
+    step_m = (T_odom_base.translation_m - T_odom_last_.translation_m).norm();
+    length_m_ += step_m;
+    if (length_m_ >= config_.submap.length_m) finished = finish();
+  }
+  if (!is_open_) begin(stamp, T_odom_base);
+  T_odom_last_ = T_odom_base;
+  end_ = stamp;
+  TreeInput input;
+  input.frame = frame;
+  input.submap = index_;
+  input.driven_m = length_m_;
+  input.step_m = step_m;
+  input.T_submap_base = T_odom_submap_.inverse() * T_odom_base;
+  calibration_.add(T_odom_base, detections);
+  rows_.emplace_back();
+  for (const Detection& detection : detections) {
+    input.measurements.push_back(makeMeasurement(detection));
+    input.measurements.back().id_if_new = next_landmark_++;
+    rows_.back().push_back(detection.row);
+  }
+  tree_.step(input, rng);
+  return finished;
+}
+
+void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {
+  ++index_;
+  is_open_ = true;
+  begin_ = stamp;
+  length_m_ = 0.0;
+  rows_.clear();
+  const Pose T_old_base = corrected(T_odom_carried_.inverse() * T_odom_base, carried_offset_);
+  tree_.restart(propagated(T_old_base.inverse()));
+  T_odom_submap_ = T_odom_base;
+}
+
+std::vector<TrackedLandmarkPtr> Mapper::propagated(const Pose& T_new_old) const {
+  const Eigen::Matrix3d R = T_new_old.rotation.toRotationMatrix();
+  std::vector<TrackedLandmarkPtr> result;
+  for (const TrackedLandmarkPtr& landmark : carried_) {
+    auto moved = std::make_shared<TrackedLandmark>(*landmark);
+    moved->position.mean_m = T_new_old * landmark->position.mean_m;
+    const Eigen::Matrix3d cov = R * landmark->position.cov_m2 * R.transpose();
+    moved->position.cov_m2 = cov + pointCov(carried_offset_, moved->position.mean_m);
+    moved->is_from_earlier_submap = true;
+    moved->updated_at_m = 0.0;
+    result.push_back(std::move(moved));
+  }
+  return result;
+}
+
+std::optional<Submap> Mapper::finish() {
+  if (!is_open_) return std::nullopt;
+  is_open_ = false;
+  Submap submap;
+  submap.index = index_;
+  submap.begin = begin_;
+  submap.end = end_;
+  submap.T_odom_submap = T_odom_submap_;
+  const auto fused_associations = fuseAssociations(tree_.leaves());
+  for (std::size_t k = 0; k < fused_associations.size(); ++k) {
+    const auto& [frame, landmark_of_measurement] = fused_associations[k];
+    for (std::size_t i = 0; i < landmark_of_measurement.size(); ++i) {
+      submap.associations.push_back({frame, rows_[k][i], landmark_of_measurement[i]});
+    }
+  }
+  carried_.clear();
+  T_odom_carried_ = T_odom_submap_;
+  carried_offset_ = tree_.leaves().front().offset;
+  const int oldest = index_ - static_cast<int>(config_.submap.propagation_m / config_.submap.length_m);
+  std::vector<MixtureLandmark> landmarks = fuseHypotheses(tree_.leaves());
+  const auto detector_cov = [this](ClassIndex class_index) -> Eigen::Matrix3d {
+    const Eigen::Vector3d stddev_m = calibration_.noiseStddev(class_index, 20.0);
+    const double horizontal_m = std::max(stddev_m[0], stddev_m[1]);
+    return Eigen::Vector3d(horizontal_m, horizontal_m, stddev_m[2]).cwiseAbs2().asDiagonal();
+  };
+  submap.merged = mergeDuplicates(config_.duplicates, fused_associations, detector_cov, landmarks);
+  for (const MixtureLandmark& landmark : landmarks) {
+    if (landmark.last_submap == index_) submap.landmarks.push_back(landmark);
+    if (landmark.last_submap < oldest) continue;
+    auto carried = std::make_shared<TrackedLandmark>();
+    carried->id = landmark.id;
+    carried->position = landmark.position;
+    carried->class_probs = landmark.class_probs;
+    carried->log_existence_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
+    carried->observations = landmark.observations;
+    carried->first_submap = landmark.first_submap;
+    carried->last_submap = landmark.last_submap;
+    carried_.push_back(std::move(carried));
+  }
+  return submap;
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,102 @@
+#include "semantic_mht_slam/mapping/mapper_config.h"
+
+namespace semantic_mht_slam {
+
+void describe(AssociationConfig& config, Fields& fields) {
+  fields.add("gate_prob", config.gate_prob, "", {0.5, 0.999999},
+             "Share of true associations that the chi-square gate lets through.");
+  fields.add("max_gate", config.max_gate_m, "m", {0.1, 100.0}, "Detections further from a landmark are never its own.");
+  fields.add<CountPrior>(
+      "count_prior", config.count_prior,
+      {{"none", CountPrior::kNone}, {"linear", CountPrior::kLinear}, {"exponential", CountPrior::kExponential}},
+      "Weight g(N) of a landmark with N detections: 1, N (Chinese restaurant process) or exp(N) (the paper).");
+  fields.add("count_prior_cap", config.count_prior_cap, "", {1, 700}, "N is not counted beyond this.");
+  fields.add("concentration", config.concentration, "", {1e-9, 1e9},
+             "alpha of the Dirichlet process: readiness to make a new landmark.");
+  fields.add("false_positive_rate", config.false_positive_rate, "", {1e-9, 1e9},
+             "rho: readiness to call a detection a false positive.");
+  fields.add("map_volume", config.map_volume_m3, "m^3", {1.0, 1e9},
+             "|M|, the volume that the sensor sweeps in a submap.");
+  fields.add<ClassModel>("class_model", config.class_model,
+                         {{"delta", ClassModel::kDelta}, {"confusion", ClassModel::kConfusion}},
+                         "Whether a detection's class is always right (the paper) or may be confused.");
+  fields.add("confusion_prob", config.confusion_prob, "", {0.0, 0.9}, "Probability that a detection's class is wrong.");
+  fields.add("new_density", config.new_density, "1/frame", {1e-6, 1e3},
+             "lambda_n V: mean number of new landmarks in a frame.");
+  fields.add("false_positive_density", config.false_positive_density, "1/frame", {1e-6, 1e3},
+             "lambda_f V: mean number of false positives in a frame.");
+  fields.add(
+      "outlier_prob", config.outlier_prob, "", {0.0, 0.9},
+      "Share of detections whose centroid is far off though the object is right (badly clustered, another side of "
+      "a building); 0: Gaussian noise (the paper).");
+  fields.add("outlier_factor", config.outlier_factor, "", {1.0, 100.0}, "Their deviation, in deviations of the noise.");
+  fields.add("outlier_min_stddev", config.outlier_min_stddev_m, "m", {0.0, 100.0}, "Their deviation is at least this.");
+  fields.add("ukf_gate", config.ukf_gate_m, "m", {0.1, 100.0},
+             "Gate of the ukf baseline's nearest-neighbour assignment.");
+  fields.add(
+      "split_distance_factor", config.split_distance_factor, "", {0.0, 10.0},
+      "A detection that would be new, but stands beside a landmark that another one took, at less than this times "
+      "the landmark's gate, is a second part of it; 0: never (the paper).");
+}
+
+void describe(DetectionConfig& config, Fields& fields) {
+  fields.add("missed_detections", config.missed_detections,
+             "Whether landmarks that should be seen and are not lose existence (the paper: false).");
+  fields.add("detection_prob", config.detection_prob, "", {0.01, 0.999}, "P_D close to the sensor.");
+  fields.add("half_range", config.half_range_m, "m", {1.0, 1000.0}, "Range at which P_D has fallen to half.");
+  fields.add("max_range", config.max_range_m, "m", {1.0, 1000.0}, "Landmarks beyond this are not expected to be seen.");
+  fields.add("visibility_switch_prob", config.visibility_switch_prob, "1/frame", {0.0001, 0.5},
+             "Chance that a landmark in range gets hidden, or comes out again, from one frame to the next.");
+  fields.add("birth_prob", config.birth_prob, "", {0.001, 0.999}, "Existence probability of a landmark seen once.");
+  fields.add("keep_prob", config.keep_prob, "", {0.001, 0.999}, "Landmarks below this existence do not reach the map.");
+  fields.add("forget_prob", config.forget_prob, "", {1e-6, 0.999},
+             "Landmarks below this existence are dropped from a hypothesis.");
+}
+
+void describe(TreeConfig& config, Fields& fields) {
+  fields.add("max_hypotheses", config.max_hypotheses, "", {1, 10000}, "Hard cap of the hypotheses that live.");
+  fields.add("max_branches", config.max_branches, "", {1, 1000}, "Children that one hypothesis may have in one frame.");
+  fields.add("branch_log_ratio", config.branch_log_ratio, "nats", {0.0, 100.0},
+             "Alternatives less likely than the best assignment by more than this are not followed.");
+  fields.add("ess_ratio", config.ess_ratio, "", {0.0, 1.0},
+             "Resampling happens when the effective sample size falls below this share of the hypotheses.");
+  fields.add("kld_epsilon", config.kld_epsilon, "", {1e-4, 1.0}, "Error bound of KLD sampling (Fox 2003).");
+  fields.add("kld_delta", config.kld_delta, "", {1e-6, 0.5}, "Probability that the error bound is exceeded.");
+  fields.add("min_weight", config.min_weight, "", {0.0, 0.5}, "Hypotheses below this weight are dropped.");
+}
+
+void describe(SubmapConfig& config, Fields& fields) {
+  fields.add("length", config.length_m, "m", {1.0, 1000.0}, "Travelled length of a submap.");
+  fields.add("odometry_stddev", config.odometry_stddev_m, "m/sqrt(m)", {0.0, 10.0},
+             "Growth of the odometry's position error with the square root of the distance.");
+  fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {0.0, 1.0},
+             "Growth of the odometry's heading error with the square root of the distance.");
+  fields.add("correct_pose", config.correct_pose,
+             "Whether each hypothesis corrects the odometry within the submap by its landmarks (the paper: false).");
+  fields.add("propagation", config.propagation_m, "m", {0.0, 10000.0},
+             "Landmarks seen within this travelled distance go on into the next submap.");
+}
+
+MapperConfig defaultsOf(Estimator estimator) {
+  MapperConfig config;
+  config.estimator = estimator;
+  if (estimator == Estimator::kDpmhm) return config;
+  config.association.count_prior = CountPrior::kNone;
+  config.association.outlier_prob = 0.0;
+  config.association.split_distance_factor = 0.0;
+  config.submap.correct_pose = false;
+  config.duplicates.merge = false;
+  return config;
+}
+
+void describe(MapperConfig& config, Fields& fields) {
+  fields.add("semantics", config.semantics, "false: all classes count as one (ablation).");
+  describe(config.tree, fields);
+  describe(config.association, fields);
+  fields.group("detection", config.detection);
+  fields.group("submap", config.submap);
+  fields.group("calibration", config.calibration);
+  fields.group("duplicates", config.duplicates);
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,64 @@
+#include "semantic_mht_slam/mapping/pose_offset.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace semantic_mht_slam {
+namespace {
+
+using Jacobian = Eigen::Matrix<double, 3, 4>;
+
+/// Motion of a point at `lever_m` with the offset.
+Jacobian jacobian(const Eigen::Vector3d& lever_m) {
+  Jacobian J = Jacobian::Zero();
+  J.leftCols<3>().setIdentity();
+  J.col(3) << -lever_m.y(), lever_m.x(), 0.0;
+  return J;
+}
+
+}  // namespace
+
+Pose corrected(const Pose& T_submap_base, const PoseOffset& offset) {
+  return {(expRotation({0.0, 0.0, offset.mean[3]}) * T_submap_base.rotation).normalized(),
+          T_submap_base.translation_m + offset.mean.head<3>()};
+}
+
+Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_m) {
+  const Jacobian J = jacobian(lever_m);
+  return J * offset.cov * J.transpose();
+}
+
+PoseOffset grown(const PoseOffset& offset, double distance_m, double stddev_m, double stddev_rad) {
+  PoseOffset result = offset;
+  result.cov.diagonal().head<3>().array() += stddev_m * stddev_m * distance_m;
+  result.cov(3, 3) += stddev_rad * stddev_rad * distance_m;
+  return result;
+}
+
+PoseOffset updated(const PoseOffset& offset, const std::vector<OffsetObservation>& observations, double huber_sigma) {
+  if (observations.empty()) return offset;
+  // A little is added so that a known offset (covariance 0) has an inverse.
+  const Eigen::Matrix4d prior = offset.cov + 1e-9 * Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d information = prior.inverse();
+  Eigen::Vector4d vector = Eigen::Vector4d::Zero();
+  for (const OffsetObservation& observation : observations) {
+    const Jacobian J = jacobian(observation.lever_m);
+    const Eigen::Matrix3d expected = observation.cov_m2 + J * prior * J.transpose();
+    const double deviations = std::sqrt(observation.residual_m.dot(expected.llt().solve(observation.residual_m)));
+    const double weight = deviations > huber_sigma ? huber_sigma / deviations : 1.0;
+    const Eigen::Matrix<double, 4, 3> gain = weight * J.transpose() * observation.cov_m2.inverse();
+    information += gain * J;
+    vector += gain * observation.residual_m;
+  }
+  PoseOffset result;
+  result.cov = information.inverse();
+  const Eigen::Vector4d step = result.cov * vector;
+  result.mean = offset.mean + step;
+  result.cov = 0.5 * (result.cov + result.cov.transpose()).eval();
+  return result.mean.allFinite() && result.cov.allFinite() ? result : offset;
+}
+
+}  // namespace semantic_mht_slam

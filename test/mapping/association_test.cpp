@@ -1,0 +1,150 @@
+#include "semantic_mht_slam/mapping/association.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+ClassTable makeTable() {
+  std::vector<ClassInfo> classes(3);
+  for (int i = 0; i < 3; ++i) {
+    classes[static_cast<std::size_t>(i)].id = i;
+    classes[static_cast<std::size_t>(i)].name = std::string(1, static_cast<char>('a' + i));
+  }
+  classes[2].transition = Transition::kGaussian;
+  classes[2].transition_stddev_m = 2.0;
+  return ClassTable(classes, "test");
+}
+
+TrackedLandmarkPtr makeLandmark(LandmarkId id, double x, ClassIndex class_index, int observations) {
+  auto landmark = std::make_shared<TrackedLandmark>();
+  landmark->id = id;
+  landmark->position = {{x, 0.0, 0.0}, 0.01 * Eigen::Matrix3d::Identity()};
+  landmark->class_probs = ClassProbs::Zero(3);
+  landmark->class_probs[class_index] = 1.0;
+  landmark->observations = observations;
+  return landmark;
+}
+
+Measurement makeMeasurement(double x, ClassIndex class_index) {
+  Measurement measurement;
+  measurement.position_m = {x, 0.0, 0.0};
+  measurement.cov_m2 = 0.01 * Eigen::Matrix3d::Identity();
+  measurement.class_index = class_index;
+  return measurement;
+}
+
+/// The paper's own setting: Gaussian noise, Kronecker delta of the classes.
+MapperConfig makePaperConfig() {
+  MapperConfig config;
+  config.association.outlier_prob = 0.0;
+  config.association.class_model = ClassModel::kDelta;
+  config.association.split_distance_factor = 0.0;
+  return config;
+}
+
+int bestColumn(const AssociationProblem& problem, int measurement) {
+  int best = -1;
+  double cost = 1e300;
+  for (int e = problem.costs.rowBegin(measurement); e < problem.costs.rowEnd(measurement); ++e) {
+    if (problem.costs.cost(e) < cost) {
+      cost = problem.costs.cost(e);
+      best = problem.costs.column(e);
+    }
+  }
+  return best;
+}
+
+TEST(AssociationTest, PoissonPriorFallsWithTheMeanWhenNothingComes) {
+  MapperConfig few = makePaperConfig();
+  MapperConfig many = makePaperConfig();
+  few.association.new_density = 0.1;
+  many.association.new_density = 5.0;
+  const ClassTable table = makeTable();
+  EXPECT_NEAR(AssociationModel(few, table).logAssignmentPrior(0, 0, 0) -
+                  AssociationModel(many, table).logAssignmentPrior(0, 0, 0),
+              4.9, 1e-12)
+      << "exp(-lambda V), not exp(+lambda V)";
+}
+
+TEST(AssociationTest, AssignmentPriorEqualsItsFormula) {
+  MapperConfig config = makePaperConfig();
+  config.association.new_density = 2.0;
+  config.association.false_positive_density = 0.5;
+  const double expected =
+      std::log(2.0 * 6.0 / 5040.0) + std::log(std::exp(-2.0) * 4.0 / 2.0) + std::log(std::exp(-0.5) * 0.125 / 6.0);
+  EXPECT_NEAR(AssociationModel(config, makeTable()).logAssignmentPrior(2, 3, 7), expected, 1e-12);
+}
+
+TEST(AssociationTest, AHundredSightingsNeitherOverflowNorCaptureADetectionFourteenSigmaAway) {
+  for (const CountPrior prior : {CountPrior::kLinear, CountPrior::kExponential}) {
+    MapperConfig config = makePaperConfig();
+    config.association.count_prior = prior;
+    const AssociationModel model(config, makeTable());
+    MapHypothesis hypothesis;
+    hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 100000), makeLandmark(2, 2.2, 0, 1)};
+    const double sigma = std::sqrt(0.02);
+    AssociationProblem problem;
+    model.formulate(hypothesis, {makeMeasurement(14.0 * sigma, 0)}, 0.0, problem);
+    for (const double cost : problem.costs.costs()) EXPECT_TRUE(std::isfinite(cost));
+    EXPECT_EQ(bestColumn(problem, 0), 1);
+  }
+}
+
+TEST(AssociationTest, UnderTheDeltaModelAnotherClassIsNeverTheSameLandmark) {
+  const AssociationModel model(makePaperConfig(), makeTable());
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 10)};
+  AssociationProblem problem;
+  model.formulate(hypothesis, {makeMeasurement(0.0, 1), makeMeasurement(0.0, 0)}, 0.0, problem);
+  EXPECT_EQ(problem.gated[0].size(), 0U);
+  EXPECT_EQ(problem.gated[1].size(), 1U);
+}
+
+TEST(AssociationTest, UnderTheConfusionModelItIsPossibleAndWithoutSemanticsEqual) {
+  MapperConfig config = makePaperConfig();
+  config.association.class_model = ClassModel::kConfusion;
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 10)};
+  AssociationProblem problem;
+  AssociationModel(config, makeTable())
+      .formulate(hypothesis, {makeMeasurement(0.0, 1), makeMeasurement(0.0, 0)}, 0.0, problem);
+  ASSERT_EQ(problem.gated[0].size(), 1U);
+  EXPECT_LT(problem.gated[0][0].log_likelihood, problem.gated[1][0].log_likelihood);
+  config.semantics = false;
+  AssociationModel(config, makeTable())
+      .formulate(hypothesis, {makeMeasurement(0.0, 1), makeMeasurement(0.0, 0)}, 0.0, problem);
+  EXPECT_EQ(problem.gated[0][0].log_likelihood, problem.gated[1][0].log_likelihood);
+}
+
+TEST(AssociationTest, AFalsePositiveIsUnlikelyWhereALandmarkExplainsTheMeasurement) {
+  MapperConfig config = makePaperConfig();
+  config.association.false_positive_rate = 1.0;
+  const AssociationModel model(config, makeTable());
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 1)};
+  AssociationProblem problem;
+  model.formulate(hypothesis, {makeMeasurement(0.0, 0), makeMeasurement(30.0, 0)}, 0.0, problem);
+  const auto falseCost = [&](int row) { return problem.costs.cost(problem.costs.rowEnd(row) - 1); };
+  EXPECT_GT(falseCost(0), falseCost(1) + 5.0);
+}
+
+TEST(AssociationTest, GaussianTransitionsWidenLandmarksOfEarlierSubmapsOnly) {
+  const AssociationModel model(makePaperConfig(), makeTable());
+  auto earlier = std::make_shared<TrackedLandmark>(*makeLandmark(1, 0.0, 2, 5));
+  earlier->is_from_earlier_submap = true;
+  MapHypothesis now;
+  now.landmarks = {makeLandmark(1, 0.0, 2, 5)};
+  MapHypothesis before;
+  before.landmarks = {earlier};
+  AssociationProblem problem;
+  model.formulate(now, {makeMeasurement(3.0, 2)}, 0.0, problem);
+  EXPECT_TRUE(problem.gated[0].empty());
+  model.formulate(before, {makeMeasurement(3.0, 2)}, 0.0, problem);
+  EXPECT_EQ(problem.gated[0].size(), 1U);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
