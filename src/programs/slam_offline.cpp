@@ -100,7 +100,7 @@ int run(int argc, char** argv) {
   const RunResult result =
       runOffline(recording, config.slam, classes, [&](std::size_t done, std::size_t all) { progress(done, all); });
   writeResultFiles(output.staging(), recording, result, config, classes);
-  const std::size_t map_bytes = writeMapFile(output.staging() + "/map.bag", result.trajectory, classes, config.node);
+  const std::size_t map_bytes = writeMapFile(output.staging() + "/map.bag", result, classes, config.node);
   writeReport(output.staging(), recording, result, config, map_bytes);
   output.commit();
   printSummary(recording, result, arguments.output);

@@ -114,12 +114,14 @@ void writeBag(const std::string& path, const Recording& recording, const ClassTa
   });
 }
 
-std::size_t writeMapFile(const std::string& path, const std::vector<StampedPose>& T_map_base, const ClassTable& classes,
+std::size_t writeMapFile(const std::string& path, const RunResult& result, const ClassTable& classes,
                          const NodeConfig& frames) {
   writeBagAtomically(path, [&](rosbag::Bag& bag) {
-    const Stamp stamp = std::max<Stamp>(1, T_map_base.empty() ? 1 : T_map_base.back().stamp);
-    bag.write("/map", toRosTime(stamp), makeEmptyMap(stamp, frames.map_frame, classes));
-    bag.write("/trajectory", toRosTime(stamp), toPath(T_map_base, frames.map_frame));
+    bag.setCompression(rosbag::compression::BZ2);
+    const Stamp last = result.trajectory.empty() ? 0 : result.trajectory.back().stamp;
+    const Stamp stamp = std::max<Stamp>(1, last);  // ROS time cannot be 0
+    bag.write("/map", toRosTime(stamp), toMessage(stamp, frames.map_frame, classes, result.landmarks, result.submaps));
+    bag.write("/trajectory", toRosTime(stamp), toPath(result.trajectory, frames.map_frame));
   });
   return static_cast<std::size_t>(std::filesystem::file_size(path));
 }

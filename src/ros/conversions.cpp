@@ -43,6 +43,14 @@ SemanticObject toObject(const Detection& detection, const ClassTable& classes) {
   return object;
 }
 
+template <class Covariance>
+void fillGaussian(const Gaussian3& gaussian, geometry_msgs::Point& mean, Covariance& covariance) {
+  mean.x = gaussian.mean_m.x();
+  mean.y = gaussian.mean_m.y();
+  mean.z = gaussian.mean_m.z();
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(covariance.data()) = gaussian.cov_m2;
+}
+
 }  // namespace
 
 ros::Time toRosTime(Stamp stamp) {
@@ -136,17 +144,62 @@ Detections fromMessage(const SemanticObjectArray& message, const ClassTable& cla
   return detections;
 }
 
-SemanticMap makeEmptyMap(Stamp stamp, const std::string& map_frame, const ClassTable& classes) {
+Landmark toMessage(const MixtureLandmark& landmark, const ClassTable& classes) {
+  Landmark message;
+  message.id = landmark.id;
+  message.class_id = static_cast<std::uint16_t>(classes[landmark.mostLikelyClass()].id);
+  message.class_probs.assign(landmark.class_probs.begin(), landmark.class_probs.end());
+  fillGaussian(landmark.position, message.position, message.covariance);
+  for (const MixtureComponent& component : landmark.components) {
+    message.components.emplace_back();
+    message.components.back().weight = component.weight;
+    fillGaussian(component.position, message.components.back().mean, message.components.back().covariance);
+  }
+  message.existence_prob = landmark.existence_prob;
+  message.observations = static_cast<std::uint32_t>(landmark.observations);
+  message.undecided = landmark.isUndecided();
+  message.first_submap = static_cast<std::uint32_t>(landmark.first_submap);
+  message.last_submap = static_cast<std::uint32_t>(landmark.last_submap);
+  message.merged_ids = landmark.merged_ids;
+  return message;
+}
+
+SemanticMap toMessage(Stamp stamp, const std::string& map_frame, const ClassTable& classes,
+                      const std::vector<MixtureLandmark>& landmarks, std::size_t submaps) {
   SemanticMap map;
   map.header.stamp = toRosTime(stamp);
   map.header.frame_id = map_frame;
+  map.submaps = static_cast<std::uint32_t>(submaps);
   for (const ClassInfo& info : classes.all()) {
     map.classes.emplace_back();
     map.classes.back().id = static_cast<std::uint16_t>(info.id);
     map.classes.back().name = info.name;
     map.classes.back().is_static = info.is_static;
   }
+  for (const MixtureLandmark& landmark : landmarks) map.landmarks.push_back(toMessage(landmark, classes));
   return map;
+}
+
+HypothesisTree toMessage(const Frame& frame, const std::string& map_frame, int submap,
+                         const std::vector<MapHypothesis>& leaves) {
+  HypothesisTree message;
+  message.header.stamp = toRosTime(frame.stamp);
+  message.header.frame_id = map_frame;
+  message.submap = static_cast<std::uint32_t>(submap);
+  double squares = 0.0;
+  for (const MapHypothesis& leaf : leaves) {
+    message.hypotheses.emplace_back();
+    semantic_mht_slam::Hypothesis& hypothesis = message.hypotheses.back();
+    hypothesis.id = leaf.id;
+    hypothesis.parent_id = leaf.parent_id;
+    hypothesis.weight = std::exp(leaf.log_weight);
+    hypothesis.log_weight = leaf.log_weight;
+    hypothesis.age = static_cast<std::uint32_t>(frame.index - leaf.born_frame);
+    hypothesis.landmarks = static_cast<std::uint32_t>(leaf.landmarks.size());
+    squares += hypothesis.weight * hypothesis.weight;
+  }
+  message.effective_sample_size = squares > 0.0 ? 1.0 / squares : 0.0;
+  return message;
 }
 
 }  // namespace semantic_mht_slam

@@ -27,6 +27,8 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const SystemConfig& config, co
       pose_publisher_(handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", 100)),
       trajectory_publisher_(handle_.advertise<nav_msgs::Path>("trajectory", 1, true)),
       objects_publisher_(handle_.advertise<visualization_msgs::MarkerArray>("markers/objects", 10, true)),
+      hypotheses_publisher_(handle_.advertise<HypothesisTree>("hypotheses", 10)),
+      map_publisher_(handle_.advertise<SemanticMap>("map", 1, true)),
       slam_(std::make_unique<Slam>(config.slam, classes)),
       jump_(stampFromSeconds(config.node.reset_after_jump_back_s)),
       queue_(static_cast<std::size_t>(config.node.queue_size)) {
@@ -104,6 +106,7 @@ void SlamNode::startAgain(Stamp stamp) {
   slam_ = std::make_unique<Slam>(config_.slam, classes_);
   published_odometry_ = 0;
   published_frame_.reset();
+  published_submaps_ = 0;
 }
 
 void SlamNode::handle(const SemanticObjectArray& message) {
@@ -135,6 +138,12 @@ void SlamNode::publishObjects() {
   if (!frame || frame->stamp == published_frame_) return;
   published_frame_ = frame->stamp;
   objects_publisher_.publish(toObjectMarkers(*frame, slam_->T_map_odom(), classes_, config_.node.map_frame));
+  if (slam_->hypotheses().empty()) return;
+  hypotheses_publisher_.publish(toMessage(*frame, config_.node.map_frame, slam_->submapIndex(), slam_->hypotheses()));
+  const std::size_t submaps = slam_->map().submaps().size();
+  if (submaps == published_submaps_) return;
+  published_submaps_ = submaps;
+  map_publisher_.publish(toMessage(frame->stamp, config_.node.map_frame, classes_, slam_->map().landmarks(), submaps));
 }
 
 std::optional<Pose> SlamNode::findSensor(const std::string& sensor_frame) {

@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/slam/submap_archive.h"
 
+#include <map>
 #include <utility>
 
 namespace semantic_mht_slam {
@@ -28,10 +29,13 @@ void SubmapArchive::add(std::shared_ptr<const Submap> submap) {
 }
 
 std::vector<MixtureLandmark> SubmapArchive::landmarks() const {
+  std::map<LandmarkId, std::vector<LandmarkId>> merged_into;
+  for (const auto& [merged, survivor] : survivor_of_) merged_into[resolve(survivor)].push_back(merged);
   std::vector<MixtureLandmark> result;
   for (const auto& [id, entry] : landmarks_) {
     if (!isKept(id)) continue;
     result.push_back(transformed(submaps_[static_cast<std::size_t>(entry.submap)]->T_odom_submap, entry.landmark));
+    result.back().merged_ids = merged_into[id];
   }
   return result;
 }

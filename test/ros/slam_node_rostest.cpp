@@ -31,6 +31,10 @@ constexpr Stamp kOrigin = 1000000000;
 class SlamNodeTest : public ::testing::Test {
  protected:
   SlamNodeTest() : transform_listener_(transforms_) {
+    subscribers_.push_back(handle_.subscribe<HypothesisTree>(
+        "hypotheses", 1000, [this](const HypothesisTreeConstPtr& m) { trees_.push_back(*m); }));
+    subscribers_.push_back(
+        handle_.subscribe<SemanticMap>("map", 10, [this](const SemanticMapConstPtr& m) { map_ = *m; }));
     subscribers_.push_back(
         handle_.subscribe<rosgraph_msgs::Log>("/rosout", 100, [this](const rosgraph_msgs::LogConstPtr& m) {
           const std::lock_guard<std::mutex> lock(warnings_mutex_);
@@ -94,6 +98,8 @@ class SlamNodeTest : public ::testing::Test {
   nav_msgs::Path trajectory_;
   std::vector<geometry_msgs::PoseWithCovarianceStamped> poses_;
   std::vector<visualization_msgs::MarkerArray> markers_;
+  std::vector<HypothesisTree> trees_;
+  SemanticMap map_;
   mutable std::mutex warnings_mutex_;
   std::vector<std::string> warnings_;
 };
@@ -118,6 +124,15 @@ TEST_F(SlamNodeTest, ReplayedBagGivesTheOfflineTrajectoryAndALaterOneStartsAgain
   const auto T_map_odom = transforms_.lookupTransform("map", "odom", toRosTime(last));
   EXPECT_EQ(fromMessage(T_map_odom.transform).translation_m, Eigen::Vector3d::Zero());
   EXPECT_TRUE(transforms_.canTransform("map", "velodyne", toRosTime(last)));
+
+  EXPECT_EQ(trees_.size(), kFrames);
+  for (const HypothesisTree& tree : trees_) {
+    double weight = 0.0;
+    for (const auto& hypothesis : tree.hypotheses) weight += hypothesis.weight;
+    EXPECT_NEAR(weight, 1.0, 1e-9);
+  }
+  ASSERT_GE(map_.submaps, 1U) << "a circle of 96 m has finished submaps";
+  for (const Landmark& landmark : map_.landmarks) EXPECT_GE(landmark.existence_prob, 0.5);
 
   ASSERT_EQ(markers_.size(), kFrames) << "one marker array a detector frame, empty frames included";
   for (std::size_t i = 0; i < kFrames; ++i) {

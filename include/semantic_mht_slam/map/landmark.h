@@ -35,7 +35,8 @@ struct MixtureLandmark {
   double existence_prob = 0.0;
   int observations = 0;  ///< detections assigned to it in the most likely hypothesis that has it
   int first_submap = 0;
-  int last_submap = 0;  ///< that saw it
+  int last_submap = 0;                 ///< that saw it
+  std::vector<LandmarkId> merged_ids;  ///< of landmarks that turned out to be this one, rising
 
   ClassIndex mostLikelyClass() const;
   bool isUndecided() const { return components.size() > 1; }

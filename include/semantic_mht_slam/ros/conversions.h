@@ -8,12 +8,16 @@
 #include <nav_msgs/Path.h>
 #include <ros/time.h>
 
+#include <semantic_mht_slam/HypothesisTree.h>
 #include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
 #include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/map/landmark.h"
+#include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/models/detection.h"
+#include "semantic_mht_slam/slam/frame.h"
 
 namespace semantic_mht_slam {
 
@@ -44,7 +48,15 @@ SemanticObjectArray toMessage(Stamp stamp, const std::string& sensor_frame, cons
 Detections fromMessage(const SemanticObjectArray& message, const ClassTable& classes, const Pose& T_base_sensor,
                        std::size_t& unknown_classes);
 
-/// A map without landmarks: the class table and the frame.
-SemanticMap makeEmptyMap(Stamp stamp, const std::string& map_frame, const ClassTable& classes);
+/// A landmark in the frame of the map.
+Landmark toMessage(const MixtureLandmark& landmark, const ClassTable& classes);
+
+/// Landmarks in `map_frame` with the class table.
+SemanticMap toMessage(Stamp stamp, const std::string& map_frame, const ClassTable& classes,
+                      const std::vector<MixtureLandmark>& landmarks, std::size_t submaps);
+
+/// The leaves of the current submap's tree, most likely first.
+HypothesisTree toMessage(const Frame& frame, const std::string& map_frame, int submap,
+                         const std::vector<MapHypothesis>& leaves);
 
 }  // namespace semantic_mht_slam

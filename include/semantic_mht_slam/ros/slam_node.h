@@ -22,8 +22,8 @@
 namespace semantic_mht_slam {
 
 /// The ROS node. Subscribers put messages into a bounded queue; one worker thread owns the estimator, takes them out,
-/// and publishes tf map -> odom, `pose` and `markers/objects`; a wall timer publishes `trajectory` (latched) when it
-/// has changed, so that the last one goes out even if the clock of a replay has stopped.
+/// and publishes tf map -> odom, `pose`, `markers/objects`, `hypotheses` and `map`; a wall timer publishes `trajectory`
+/// (latched) when it has changed, so that the last one goes out even if the clock of a replay has stopped.
 class SlamNode {
  public:
   SlamNode(const ros::NodeHandle& handle, const SystemConfig& config, const ClassTable& classes);
@@ -65,6 +65,8 @@ class SlamNode {
   ros::Publisher pose_publisher_;
   ros::Publisher trajectory_publisher_;
   ros::Publisher objects_publisher_;
+  ros::Publisher hypotheses_publisher_;
+  ros::Publisher map_publisher_;
 
   // Owned by the worker, but for the trajectory that the timer publishes.
   std::unique_ptr<Slam> slam_;
@@ -78,6 +80,7 @@ class SlamNode {
   std::mutex slam_mutex_;
   std::size_t published_odometry_ = 0;
   std::optional<Stamp> published_frame_;
+  std::size_t published_submaps_ = 0;
 
   InputQueue queue_;
   ros::Subscriber odometry_subscriber_;

@@ -71,6 +71,9 @@ class Slam {
   /// The hypotheses of the current submap, most likely first; empty for the method `odometry`.
   const std::vector<MapHypothesis>& hypotheses() const;
 
+  /// Index of the current submap; -1 before the first.
+  int submapIndex() const { return mapper_ ? mapper_->submapIndex() : -1; }
+
   const InputCounters& counters() const { return assembler_.counters(); }
 
  private:
