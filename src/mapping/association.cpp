@@ -9,8 +9,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093454836;
-
 /// Quantile of the chi-square distribution with 3 degrees of freedom, by bisection of its closed-form distribution
 /// function erf(sqrt(x/2)) - sqrt(2x/pi) exp(-x/2).
 double chiSquare3Quantile(double prob) {
@@ -26,29 +24,6 @@ double chiSquare3Quantile(double prob) {
 
 double logPoisson(int count, double mean) {
   return -mean + count * std::log(mean) - logFactorial(count);
-}
-
-/// Closed-form evaluation of a 3-dimensional Gaussian; false if the covariance is not positive definite.
-bool evaluateFast(const Eigen::Matrix3d& cov, const Eigen::Vector3d& d, double& mahalanobis_sq, double& log_density) {
-  const double a = cov(0, 0);
-  const double b = cov(1, 0);
-  const double c = cov(2, 0);
-  const double l00 = std::sqrt(a);
-  if (!(a > 0.0)) return false;
-  const double l10 = b / l00;
-  const double l20 = c / l00;
-  const double m = cov(1, 1) - l10 * l10;
-  if (!(m > 0.0)) return false;
-  const double l11 = std::sqrt(m);
-  const double l21 = (cov(2, 1) - l20 * l10) / l11;
-  const double n = cov(2, 2) - l20 * l20 - l21 * l21;
-  if (!(n > 0.0)) return false;
-  const double y0 = d.x() / l00;
-  const double y1 = (d.y() - l10 * y0) / l11;
-  const double y2_numerator = d.z() - l20 * y0 - l21 * y1;
-  mahalanobis_sq = y0 * y0 + y1 * y1 + y2_numerator * y2_numerator / n;
-  log_density = -0.5 * (mahalanobis_sq + std::log(a * m * n)) - 1.5 * kLogTwoPi;
-  return true;
 }
 
 }  // namespace
@@ -114,18 +89,20 @@ double AssociationModel::logCountPrior(int observations) const {
 
 bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
                                        const Eigen::Vector3d& d, Candidate& candidate, double& log_density) const {
-  if (!evaluateFast(cov, d, candidate.mahalanobis_sq, log_density)) return false;
+  const auto narrow = evaluate({Eigen::Vector3d::Zero(), cov}, d);
+  if (!narrow) return false;
+  candidate.mahalanobis_sq = narrow->mahalanobis_sq;
+  log_density = narrow->log_density;
   const double outlier_prob = config_.association.outlier_prob;
   if (outlier_prob == 0.0) return true;
-  Eigen::Matrix3d wide = cov;
-  wide.diagonal() += outlier_variance_m2;
-  double wide_mahalanobis_sq = 0.0;
-  double log_wide = 0.0;
-  if (!evaluateFast(wide, d, wide_mahalanobis_sq, log_wide)) return false;
-  const double inlier = std::log1p(-outlier_prob) + log_density;
-  const double outlier = std::log(outlier_prob) + log_wide;
+  Eigen::Matrix3d wide_cov = cov;
+  wide_cov.diagonal() += outlier_variance_m2;
+  const auto wide = evaluate({Eigen::Vector3d::Zero(), wide_cov}, d);
+  if (!wide) return false;
+  const double inlier = std::log1p(-outlier_prob) + narrow->log_density;
+  const double outlier = std::log(outlier_prob) + wide->log_density;
   candidate.is_outlier = outlier > inlier;
-  candidate.mahalanobis_sq = wide_mahalanobis_sq;
+  candidate.mahalanobis_sq = wide->mahalanobis_sq;
   log_density = std::max(inlier, outlier) + std::log1p(std::exp(-std::abs(inlier - outlier)));
   return true;
 }

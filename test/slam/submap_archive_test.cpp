@@ -1,0 +1,64 @@
+#include "semantic_mht_slam/slam/submap_archive.h"
+
+#include <gtest/gtest.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+MixtureLandmark makeLandmark(LandmarkId id, double x, double existence) {
+  MixtureLandmark landmark;
+  landmark.id = id;
+  landmark.position = {{x, 0.0, 0.0}, Eigen::Vector3d(0.04, 0.01, 0.09).asDiagonal()};
+  landmark.components = {{1.0, landmark.position}};
+  landmark.existence_prob = existence;
+  return landmark;
+}
+
+std::shared_ptr<const Submap> makeSubmap(const Pose& T_odom_submap, std::vector<MixtureLandmark> landmarks,
+                                         std::vector<DetectionAssociation> associations,
+                                         std::vector<MergedLandmark> merged) {
+  auto submap = std::make_shared<Submap>();
+  submap->T_odom_submap = T_odom_submap;
+  submap->landmarks = std::move(landmarks);
+  submap->associations = std::move(associations);
+  submap->merged = std::move(merged);
+  return submap;
+}
+
+TEST(SubmapArchiveTest, TheLastSubmapThatSawALandmarkPlacesIt) {
+  SubmapArchive archive(0.5);
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(1, 5.0, 0.9)}, {}, {}));
+  const Pose T_odom_submap{expRotation({0.0, 0.0, M_PI / 2.0}), {10.0, 0.0, 0.0}};
+  archive.add(makeSubmap(T_odom_submap, {makeLandmark(1, 2.0, 0.9)}, {}, {}));
+  const auto landmarks = archive.landmarks();
+  ASSERT_EQ(landmarks.size(), 1U);
+  EXPECT_LT((landmarks[0].position.mean_m - Eigen::Vector3d(10.0, 2.0, 0.0)).norm(), 1e-12);
+  EXPECT_NEAR(landmarks[0].position.cov_m2(0, 0), 0.01, 1e-12) << "the covariance turns with the submap";
+  EXPECT_LT((landmarks[0].components[0].position.mean_m - landmarks[0].position.mean_m).norm(), 1e-12);
+}
+
+TEST(SubmapArchiveTest, MergedIdsStayResolvableThroughChains) {
+  SubmapArchive archive(0.5);
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(2, 0.0, 0.9)}, {{0, 0, 1}, {0, 1, 2}}, {{1, 2}}));
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(3, 0.0, 0.9)}, {{1, 0, 3}}, {{2, 3}}));
+  EXPECT_EQ(archive.resolve(1), 3U);
+  EXPECT_EQ(archive.resolve(7), 7U);
+  const auto landmarks = archive.landmarks();
+  ASSERT_EQ(landmarks.size(), 1U);
+  EXPECT_EQ(landmarks[0].merged_ids, (std::vector<LandmarkId>{1, 2}));
+  for (const DetectionAssociation& association : archive.associations()) EXPECT_EQ(association.landmark, 3U);
+}
+
+TEST(SubmapArchiveTest, DetectionsOfUnlikelyLandmarksAreFalsePositives) {
+  SubmapArchive archive(0.5);
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(1, 0.0, 0.2), makeLandmark(2, 5.0, 0.8)},
+                         {{0, 0, 1}, {0, 1, 2}, {0, 2, kNoLandmark}}, {}));
+  const auto associations = archive.associations();
+  EXPECT_EQ(associations[0].landmark, kNoLandmark);
+  EXPECT_EQ(associations[1].landmark, 2U);
+  EXPECT_EQ(associations[2].landmark, kNoLandmark);
+  EXPECT_EQ(archive.landmarks().size(), 1U);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
