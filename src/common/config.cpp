@@ -98,8 +98,8 @@ void Fields::add(const std::string& name, std::string& value, const std::string&
   append({name, "text", "", "", help, [&value] { return value; }, set});
 }
 
-void Fields::addChoice(const std::string& name, std::vector<std::string> names, const std::string& help,
-                       std::function<std::size_t()> get, std::function<void(std::size_t)> set_index) {
+void Fields::addChoice(const std::string& name, const std::vector<std::string>& names, const std::string& help,
+                       const std::function<std::size_t()>& get, const std::function<void(std::size_t)>& set_index) {
   const auto set = [names, set_index](const std::string& text) -> std::optional<std::string> {
     const auto found = std::find(names.begin(), names.end(), text);
     if (found == names.end()) return "is none of " + joined(names);

@@ -30,7 +30,8 @@ void MultiHypothesisTree::restart(std::vector<TrackedLandmarkPtr> landmarks) {
   MapHypothesis root;
   root.id = next_hypothesis_id_++;
   root.landmarks = std::move(landmarks);
-  leaves_.assign(1, std::move(root));
+  leaves_.clear();
+  leaves_.push_back(std::move(root));
 }
 
 void MultiHypothesisTree::step(const TreeInput& input, Rng& rng) {

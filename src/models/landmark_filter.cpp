@@ -32,8 +32,8 @@ std::optional<SigmaPoints> sigmaPoints(const Gaussian3& gaussian) {
   SigmaPoints points;
   points[0] = gaussian.mean_m;
   for (int i = 0; i < kDimension; ++i) {
-    points[static_cast<std::size_t>(1 + i)] = gaussian.mean_m + offsets.col(i);
-    points[static_cast<std::size_t>(1 + kDimension + i)] = gaussian.mean_m - offsets.col(i);
+    points[1 + static_cast<std::size_t>(i)] = gaussian.mean_m + offsets.col(i);
+    points[1 + kDimension + static_cast<std::size_t>(i)] = gaussian.mean_m - offsets.col(i);
   }
   return points;
 }

@@ -74,8 +74,8 @@ class Fields {
   const std::vector<Field>& all() const { return fields_; }
 
  private:
-  void addChoice(const std::string& name, std::vector<std::string> names, const std::string& help,
-                 std::function<std::size_t()> get, std::function<void(std::size_t)> set);
+  void addChoice(const std::string& name, const std::vector<std::string>& names, const std::string& help,
+                 const std::function<std::size_t()>& get, const std::function<void(std::size_t)>& set);
   void append(Field field);
 
   std::string prefix_;

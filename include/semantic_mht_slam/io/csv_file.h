@@ -37,7 +37,7 @@ class CsvRow {
 class CsvReader {
  public:
   /// Columns are numbered as in `required`, then as in `optional`.
-  CsvReader(std::vector<std::string> required, std::vector<std::string> optional = {});
+  explicit CsvReader(std::vector<std::string> required, std::vector<std::string> optional = {});
 
   /// Calls `use` for each row. Throws InputError for a missing file, a missing, repeated or unknown column and a row
   /// with another number of cells than the header.
