@@ -75,14 +75,9 @@ double peakRssMb() {
 }
 
 Json toJson(const TrajectoryError& error) {
-  return {{"first_m", error.first_m},
-          {"se3_m", error.se3_m},
-          {"running_mean_m", error.running_mean_m},
-          {"running_std_m", error.running_std_m},
-          {"t_rel_percent", error.t_rel_percent},
-          {"r_rel_deg_per_100m", error.r_rel_deg_per_100m},
-          {"revisit_m", error.revisit_m},
-          {"end_m", error.end_m}};
+  Json json;
+  for (const auto& [name, value] : namedFigures(error)) json[name] = value;
+  return json;
 }
 
 Json toJson(const InputCounters& counters) {
@@ -129,7 +124,7 @@ void writeResultFiles(const std::string& folder, const Recording& recording, con
   writeFileAtomically(folder + "/config.yaml", toYaml(config));
 }
 
-void writeReport(const std::string& folder, const Recording& recording, const RunResult& result,
+void writeReport(const std::string& folder, const RunResult& result, const std::optional<TrajectoryError>& error,
                  const SystemConfig& config, std::size_t map_bytes) {
   Json report = {{"method", nameOf(config.slam.method)},
                  {"seed", config.slam.seed},
@@ -143,7 +138,7 @@ void writeReport(const std::string& folder, const Recording& recording, const Ru
                  {"loop_closures", 0},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};
-  if (const auto error = scoreRun(recording, result.trajectory)) report["error"] = toJson(*error);
+  if (error) report["error"] = toJson(*error);
   writeFileAtomically(folder + "/report.json", report.dump(2) + "\n");
 }
 

@@ -192,4 +192,15 @@ std::vector<PoseMatrix> poseMatrices(const std::vector<Pose>& poses) {
   return result;
 }
 
+std::vector<std::pair<std::string, double>> namedFigures(const TrajectoryError& error) {
+  return {{"first_m", error.first_m},
+          {"se3_m", error.se3_m},
+          {"running_mean_m", error.running_mean_m},
+          {"running_std_m", error.running_std_m},
+          {"t_rel_percent", error.t_rel_percent},
+          {"r_rel_deg_per_100m", error.r_rel_deg_per_100m},
+          {"revisit_m", error.revisit_m},
+          {"end_m", error.end_m}};
+}
+
 }  // namespace semantic_mht_slam

@@ -76,14 +76,9 @@ std::vector<Run> evaluateRuns(const std::string& truth_path, const std::vector<P
 }
 
 nlohmann::json toJson(const TrajectoryError& error) {
-  return {{"first_m", error.first_m},
-          {"se3_m", error.se3_m},
-          {"running_mean_m", error.running_mean_m},
-          {"running_std_m", error.running_std_m},
-          {"t_rel_percent", error.t_rel_percent},
-          {"r_rel_deg_per_100m", error.r_rel_deg_per_100m},
-          {"revisit_m", error.revisit_m},
-          {"end_m", error.end_m}};
+  nlohmann::json json;
+  for (const auto& [name, value] : namedFigures(error)) json[name] = value;
+  return json;
 }
 
 nlohmann::json toJson(const std::vector<Run>& runs) {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,9 +69,9 @@ Recording loadRecording(const Arguments& arguments, const ClassTable& classes, c
   return toRecording(readDataset(arguments.dataset, classes));
 }
 
-void printSummary(const Recording& recording, const RunResult& result, const std::string& output) {
+void printSummary(const RunResult& result, const std::optional<TrajectoryError>& error, const std::string& output) {
   std::printf("%zu frames in %.2f s", result.trajectory.size(), result.seconds);
-  if (const auto error = scoreRun(recording, result.trajectory)) {
+  if (error) {
     std::printf("; error: SE3-aligned %.3f m, running %.3f +- %.3f m", error->se3_m, error->running_mean_m,
                 error->running_std_m);
     if (std::isfinite(error->t_rel_percent)) std::printf(", t_rel %.3f %%", error->t_rel_percent);
@@ -101,9 +102,10 @@ int run(int argc, char** argv) {
       runOffline(recording, config.slam, classes, [&](std::size_t done, std::size_t all) { progress(done, all); });
   writeResultFiles(output.staging(), recording, result, config, classes);
   const std::size_t map_bytes = writeMapFile(output.staging() + "/map.bag", result, classes, config.node);
-  writeReport(output.staging(), recording, result, config, map_bytes);
+  const std::optional<TrajectoryError> error = scoreRun(recording, result.trajectory);
+  writeReport(output.staging(), result, error, config, map_bytes);
   output.commit();
-  printSummary(recording, result, arguments.output);
+  printSummary(result, error, arguments.output);
   return 0;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -26,6 +28,9 @@ struct TrajectoryError {
                                   ///< the same place (at most 3 m apart, more than 200 frames before)
   double end_m = kUndefined;      ///< error of the last position with the first poses made equal
 };
+
+/// The figures with their names in reports, in the order of the struct.
+std::vector<std::pair<std::string, double>> namedFigures(const TrajectoryError& error);
 
 /// A pose as a file has it. A rotation printed with seven digits is no exact one; projecting it onto the rotations, as
 /// `Pose` does, shifts positions by up to 1e-5 m on a drive of some kilometres.

@@ -13,12 +13,13 @@ namespace semantic_mht_slam {
 /// Weights must be normalised.
 std::vector<MixtureLandmark> fuseHypotheses(const std::vector<MapHypothesis>& leaves);
 
-/// The landmark of each measurement with the largest summed weight, frame by frame from the beginning of the history.
-/// `rows` gives the row of each measurement of a frame in its file or message.
+/// The landmark of each measurement of a frame; kNoLandmark: a false positive.
 struct FusedAssociations {
   std::size_t frame = 0;
   std::vector<LandmarkId> landmark_of_measurement;
 };
+
+/// The landmark with the largest summed weight for each measurement, frame by frame from the beginning of the history.
 std::vector<FusedAssociations> fuseAssociations(const std::vector<MapHypothesis>& leaves);
 
 }  // namespace semantic_mht_slam

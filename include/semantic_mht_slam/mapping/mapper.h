@@ -28,12 +28,12 @@ class Mapper {
   /// The leaves of the current tree, most likely first.
   const std::vector<MapHypothesis>& hypotheses() const { return tree_.leaves(); }
 
-  /// The current submap's landmarks, fused, in the odom frame's place of it.
-  const Pose& T_odom_submap() const { return T_odom_submap_; }
+  /// Index of the current submap; -1 before the first.
   int submapIndex() const { return index_; }
 
  private:
   void begin(Stamp stamp, const Pose& T_odom_base);
+  Eigen::Matrix3d detectorCov(const Detection& detection) const;
   Measurement makeMeasurement(const Detection& detection) const;
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
 
@@ -49,8 +49,7 @@ class Mapper {
   Pose T_odom_submap_;
   Pose T_odom_last_;
   double length_m_ = 0.0;
-  std::vector<std::vector<int>> rows_;  ///< of the measurements of each frame of this submap
-  Eigen::Matrix3d detectorCov(const Detection& detection) const;
+  std::vector<std::vector<int>> rows_;       ///< of the measurements of each frame of this submap
   std::vector<TrackedLandmarkPtr> carried_;  ///< landmarks that go on into the next submap, old submap frame
   Pose T_odom_carried_;
   PoseOffset carried_offset_;
