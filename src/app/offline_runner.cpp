@@ -13,6 +13,16 @@ double millisecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
+std::vector<LoopClosureResult> loopClosures(const BackEnd& back_end) {
+  const std::vector<MapKeyframe>& keyframes = back_end.keyframes().keyframes;
+  std::vector<LoopClosureResult> result;
+  for (const LoopClosureRecord& record : back_end.closures()) {
+    result.push_back({keyframes[static_cast<std::size_t>(record.query_keyframe)].frame,
+                      keyframes[static_cast<std::size_t>(record.match_keyframe)].frame, record});
+  }
+  return result;
+}
+
 }  // namespace
 
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
@@ -29,6 +39,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
       ++frame;
     }
     result.step_ms.push_back(millisecondsSince(step_begin));
+    if (result.online_trajectory.size() < slam.counters().odometry) result.online_trajectory.push_back(*slam.latestPose());
     result.hypotheses.push_back(static_cast<int>(slam.hypotheses().size()));
     progress(i + 1, recording.odometry.size());
   }
@@ -37,7 +48,8 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.seconds = millisecondsSince(begin) / 1e3;
   result.trajectory = slam.trajectory();
   result.counters = slam.counters();
-  result.landmarks = slam.map().landmarks();
+  result.landmarks = slam.landmarks();
+  if (slam.backEnd() != nullptr) result.loop_closures = loopClosures(*slam.backEnd());
   result.associations = slam.map().associations();
   result.submaps = slam.map().submaps().size();
   if (result.trajectory.empty()) throw InputError("no odometry sample could be used");

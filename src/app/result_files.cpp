@@ -68,6 +68,24 @@ std::string formatAssociations(const std::vector<DetectionAssociation>& associat
   return text;
 }
 
+std::string formatLoopClosures(const std::vector<LoopClosureResult>& closures) {
+  std::string text = "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw,reason\n";
+  for (const auto& [query_frame, match_frame, record] : closures) {
+    text += std::to_string(query_frame) + "," + std::to_string(match_frame) + "," + (record.is_accepted ? "1" : "0") +
+            "," + formatFixed(record.score, 4) + "," + std::to_string(record.inliers);
+    for (int i = 0; i < 3; ++i) text += "," + formatFixed(record.T_match_query.translation_m[i], 4);
+    for (const double q : record.T_match_query.rotation.coeffs()) text += "," + formatFixed(q, 8);
+    text += "," + record.reason + "\n";
+  }
+  return text;
+}
+
+std::size_t acceptedClosures(const std::vector<LoopClosureResult>& closures) {
+  return static_cast<std::size_t>(std::count_if(closures.begin(), closures.end(), [](const LoopClosureResult& closure) {
+    return closure.record.is_accepted;
+  }));
+}
+
 double peakRssMb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -117,8 +135,8 @@ void writeResultFiles(const std::string& folder, const Recording& recording, con
   for (const StampedPose& pose : result.trajectory) poses.push_back(inOutputFrame(recording, pose.T_world_base));
   writeFileAtomically(folder + "/trajectory.txt", formatKittiTrajectory(poses));
   writeFileAtomically(folder + "/trajectory.tum", formatTumTrajectory(result.trajectory));
-  writeFileAtomically(folder + "/loop_closures.csv",
-                      "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw\n");
+  writeFileAtomically(folder + "/trajectory_online.tum", formatTumTrajectory(result.online_trajectory));
+  writeFileAtomically(folder + "/loop_closures.csv", formatLoopClosures(result.loop_closures));
   writeFileAtomically(folder + "/landmarks.csv", formatLandmarks(result.landmarks, classes));
   writeFileAtomically(folder + "/associations.csv", formatAssociations(result.associations));
   writeFileAtomically(folder + "/config.yaml", toYaml(config));
@@ -135,7 +153,7 @@ void writeReport(const std::string& folder, const RunResult& result, const std::
                  {"hypotheses", summarizeHypotheses(result.hypotheses)},
                  {"landmarks", result.landmarks.size()},
                  {"submaps", result.submaps},
-                 {"loop_closures", 0},
+                 {"loop_closures", acceptedClosures(result.loop_closures)},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};
   if (error) report["error"] = toJson(*error);

@@ -143,7 +143,7 @@ void SlamNode::publishObjects() {
   const std::size_t submaps = slam_->map().submaps().size();
   if (submaps == published_submaps_) return;
   published_submaps_ = submaps;
-  map_publisher_.publish(toMessage(frame->stamp, config_.node.map_frame, classes_, slam_->map().landmarks(), submaps));
+  map_publisher_.publish(toMessage(frame->stamp, config_.node.map_frame, classes_, slam_->landmarks(), submaps));
 }
 
 std::optional<Pose> SlamNode::findSensor(const std::string& sensor_frame) {

@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/slam/slam.h"
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -34,11 +35,18 @@ void describe(SlamConfig& config, Fields& fields) {
   fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
   fields.group("input", config.input);
   describe(config.mapper, fields);
+  fields.group("back_end", config.back_end);
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)
-    : assembler_(config.input), rng_(config.seed), map_(config.mapper.detection.keep_prob) {
-  if (config.method != Method::kOdometry) mapper_.emplace(config.mapper, classes);
+    : assembler_(config.input),
+      rng_(config.seed),
+      keyframe_config_(config.back_end.keyframe),
+      keep_prob_(config.mapper.detection.keep_prob),
+      map_(config.mapper.detection.keep_prob) {
+  if (config.method == Method::kOdometry) return;
+  mapper_.emplace(config.mapper, classes);
+  back_end_.emplace(config.back_end, classes);
 }
 
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
@@ -56,16 +64,31 @@ void Slam::addDetections(Stamp stamp, Detections detections) {
 void Slam::processReadyFrames() {
   while (auto frame = assembler_.next()) {
     if (mapper_) {
+      if (latest_frame_) {
+        driven_m_ += (frame->T_odom_base.translation_m - latest_frame_->T_odom_base.translation_m).norm();
+      }
       auto submap = mapper_->add(frame->index, frame->stamp, frame->T_odom_base, frame->detections, rng_);
-      if (submap) map_.add(std::make_shared<const Submap>(std::move(*submap)));
+      if (submap) take(std::move(*submap));
+      if (submap_frames_.empty()) submap_driven_m_ = driven_m_;
+      submap_frames_.push_back(*frame);
     }
     latest_frame_ = std::move(frame);
   }
 }
 
+void Slam::take(Submap submap) {
+  const DetectionCov cov = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
+  auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, cov, keyframe_config_);
+  submap_frames_.clear();
+  const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap.merged);
+  map_.add(std::make_shared<const Submap>(std::move(submap)));
+  for (const auto& [gone, survivor] : merged) map_.merge(gone, survivor);
+}
+
 void Slam::finish() {
   if (!mapper_) return;
-  if (auto submap = mapper_->finish()) map_.add(std::make_shared<const Submap>(std::move(*submap)));
+  if (auto submap = mapper_->finish()) take(std::move(*submap));
+  back_end_->finish();
 }
 
 const std::vector<MapHypothesis>& Slam::hypotheses() const {
@@ -74,10 +97,47 @@ const std::vector<MapHypothesis>& Slam::hypotheses() const {
 }
 
 std::vector<StampedPose> Slam::trajectory() const {
+  std::vector<Pose> odometry;
+  odometry.reserve(odometry_.size());
+  for (const StampedPose& pose : odometry_) odometry.push_back(pose.T_world_base);
+  const std::vector<CorrectionAnchor> anchors = correctionAnchors();
+  const std::vector<Pose> corrected = anchors.empty() ? odometry : correctTrajectory(odometry, anchors);
   std::vector<StampedPose> trajectory;
   trajectory.reserve(odometry_.size());
-  for (const auto& [stamp, T_odom_base] : odometry_) trajectory.push_back({stamp, T_map_odom() * T_odom_base});
+  for (std::size_t i = 0; i < corrected.size(); ++i) trajectory.push_back({odometry_[i].stamp, corrected[i]});
   return trajectory;
+}
+
+std::vector<CorrectionAnchor> Slam::correctionAnchors() const {
+  std::vector<CorrectionAnchor> anchors;
+  if (!back_end_) return anchors;
+  const KeyframeMap& map = back_end_->keyframes();
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    const MapKeyframe& keyframe = map.keyframes[k];
+    const auto sample = std::lower_bound(odometry_.begin(), odometry_.end(), keyframe.stamp,
+                                         [](const StampedPose& pose, Stamp stamp) { return pose.stamp < stamp; });
+    if (sample == odometry_.end()) continue;
+    const auto index = static_cast<std::size_t>(sample - odometry_.begin());
+    if (!anchors.empty() && anchors.back().index >= index) continue;
+    const Pose T_keyframe_base = keyframe.T_odom_base.inverse() * sample->T_world_base;
+    anchors.push_back({index, map.T_map_keyframe[k] * T_keyframe_base});
+  }
+  return anchors;
+}
+
+std::vector<MixtureLandmark> Slam::landmarks() const {
+  std::vector<MixtureLandmark> landmarks = map_.landmarks([this](int submap) {
+    return back_end_ ? back_end_->T_map_submap(submap) : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
+  });
+  if (!back_end_) return landmarks;
+  for (MixtureLandmark& landmark : landmarks) {
+    const std::optional<Eigen::Vector3d> position_m = back_end_->landmark(landmark.id);
+    if (!position_m) continue;
+    const Eigen::Vector3d shift_m = *position_m - landmark.position.mean_m;
+    landmark.position.mean_m += shift_m;
+    for (MixtureComponent& component : landmark.components) component.position.mean_m += shift_m;
+  }
+  return landmarks;
 }
 
 std::optional<StampedPose> Slam::latestPose() const {

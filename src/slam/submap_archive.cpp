@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/slam/submap_archive.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -20,21 +21,48 @@ MixtureLandmark transformed(const Pose& T_a_b, const MixtureLandmark& landmark) 
 
 void SubmapArchive::add(std::shared_ptr<const Submap> submap) {
   const int index = static_cast<int>(submaps_.size());
-  for (const MixtureLandmark& landmark : submap->landmarks) landmarks_[landmark.id] = {index, landmark};
+  for (const MixtureLandmark& landmark : submap->landmarks) {
+    const LandmarkId id = resolve(landmark.id);
+    landmarks_[id] = {index, landmark};
+    landmarks_[id].landmark.id = id;
+  }
   for (const auto& [merged, survivor] : submap->merged) {
-    survivor_of_[merged] = survivor;
-    landmarks_.erase(merged);
+    // What the mapper merged, it has already put together in the survivor.
+    landmarks_.erase(resolve(merged));
+    merge(merged, survivor);
   }
   submaps_.push_back(std::move(submap));
 }
 
-std::vector<MixtureLandmark> SubmapArchive::landmarks() const {
+void SubmapArchive::merge(LandmarkId merged, LandmarkId survivor) {
+  merged = resolve(merged);
+  survivor = resolve(survivor);
+  if (merged == survivor) return;
+  survivor_of_[merged] = survivor;
+  const auto gone = landmarks_.find(merged);
+  if (gone == landmarks_.end()) return;
+  const auto kept = landmarks_.find(survivor);
+  if (kept == landmarks_.end()) {
+    landmarks_[survivor] = gone->second;
+    landmarks_[survivor].landmark.id = survivor;
+  } else {
+    MixtureLandmark& landmark = kept->second.landmark;
+    const MixtureLandmark& other = gone->second.landmark;
+    landmark.observations += other.observations;
+    landmark.existence_prob = std::max(landmark.existence_prob, other.existence_prob);
+    landmark.first_submap = std::min(landmark.first_submap, other.first_submap);
+    landmark.last_submap = std::max(landmark.last_submap, other.last_submap);
+  }
+  landmarks_.erase(merged);
+}
+
+std::vector<MixtureLandmark> SubmapArchive::landmarks(const std::function<Pose(int)>& T_map_submap) const {
   std::map<LandmarkId, std::vector<LandmarkId>> merged_into;
   for (const auto& [merged, survivor] : survivor_of_) merged_into[resolve(survivor)].push_back(merged);
   std::vector<MixtureLandmark> result;
   for (const auto& [id, entry] : landmarks_) {
     if (!isKept(id)) continue;
-    result.push_back(transformed(submaps_[static_cast<std::size_t>(entry.submap)]->T_odom_submap, entry.landmark));
+    result.push_back(transformed(T_map_submap(entry.submap), entry.landmark));
     result.back().merged_ids = merged_into[id];
   }
   return result;

@@ -8,9 +8,18 @@
 
 namespace semantic_mht_slam {
 
+/// A loop closure between two frames of the detector.
+struct LoopClosureResult {
+  std::size_t query_frame = 0;
+  std::size_t match_frame = 0;
+  LoopClosureRecord record;
+};
+
 /// What a run over a recording gave.
 struct RunResult {
   std::vector<StampedPose> trajectory;  ///< T_map_base at every odometry sample that was used
+  std::vector<StampedPose> online_trajectory;  ///< T_map_base as it was known at each of these moments
+  std::vector<LoopClosureResult> loop_closures;
   InputCounters counters;
   std::vector<MixtureLandmark> landmarks;          ///< map frame, by rising id
   std::vector<DetectionAssociation> associations;  ///< of every detection that was used

@@ -31,9 +31,11 @@ class Mapper {
   /// Index of the current submap; -1 before the first.
   int submapIndex() const { return index_; }
 
+  /// Noise of a detection's centroid as it is known now: its own, else the calibrated one. Base frame, m^2.
+  Eigen::Matrix3d detectorCov(const Detection& detection) const;
+
  private:
   void begin(Stamp stamp, const Pose& T_odom_base);
-  Eigen::Matrix3d detectorCov(const Detection& detection) const;
   Measurement makeMeasurement(const Detection& detection) const;
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
 

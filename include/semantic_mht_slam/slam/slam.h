@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/mapping/mapper.h"
+#include "semantic_mht_slam/slam/back_end.h"
 #include "semantic_mht_slam/slam/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
@@ -31,6 +32,7 @@ struct SlamConfig {
   std::uint64_t seed = 1;
   FrameAssemblerConfig input;
   MapperConfig mapper;
+  BackEndConfig back_end;
 };
 
 /// The defaults that belong to a method.
@@ -51,7 +53,7 @@ class Slam {
   void addDetections(Stamp stamp, Detections detections);
 
   /// Correction of the odometry: T_map_base = T_map_odom * T_odom_base.
-  Pose T_map_odom() const { return Pose::identity(); }
+  Pose T_map_odom() const { return back_end_ ? back_end_->T_map_odom() : Pose::identity(); }
 
   /// T_map_base at every odometry sample that was used, in the order of time.
   std::vector<StampedPose> trajectory() const;
@@ -68,6 +70,12 @@ class Slam {
   /// The submaps that are finished.
   const SubmapArchive& map() const { return map_; }
 
+  /// The landmarks of the map at their corrected places, map frame, by rising id.
+  std::vector<MixtureLandmark> landmarks() const;
+
+  /// Keyframes, loop closures and their corrections; null for the method `odometry`.
+  const BackEnd* backEnd() const { return back_end_ ? &*back_end_ : nullptr; }
+
   /// The hypotheses of the current submap, most likely first; empty for the method `odometry`.
   const std::vector<MapHypothesis>& hypotheses() const;
 
@@ -78,10 +86,18 @@ class Slam {
 
  private:
   void processReadyFrames();
+  void take(Submap submap);
+  std::vector<CorrectionAnchor> correctionAnchors() const;
 
   FrameAssembler assembler_;
   Rng rng_;
   std::optional<Mapper> mapper_;
+  std::optional<BackEnd> back_end_;
+  std::vector<Frame> submap_frames_;  ///< of the submap that is open
+  double driven_m_ = 0.0;             ///< up to the newest frame
+  double submap_driven_m_ = 0.0;      ///< up to the first frame of the open submap
+  KeyframeConfig keyframe_config_;
+  double keep_prob_;
   SubmapArchive map_;
   std::vector<StampedPose> odometry_;
   std::optional<Frame> latest_frame_;

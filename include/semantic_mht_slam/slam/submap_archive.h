@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -16,10 +17,14 @@ class SubmapArchive {
 
   void add(std::shared_ptr<const Submap> submap);
 
+  /// Makes two landmarks one; the survivor keeps its id, both stay resolvable.
+  void merge(LandmarkId merged, LandmarkId survivor);
+
   const std::vector<std::shared_ptr<const Submap>>& submaps() const { return submaps_; }
 
-  /// The landmarks of the map in the odom frame of the submap that saw them last, by rising id.
-  std::vector<MixtureLandmark> landmarks() const;
+  /// The landmarks of the map by rising id, each as the submap that saw it last has it; `T_map_submap` gives the pose of
+  /// a submap by its index.
+  std::vector<MixtureLandmark> landmarks(const std::function<Pose(int)>& T_map_submap) const;
 
   /// The landmark that an id stands for now: itself, or the one that it was merged into.
   LandmarkId resolve(LandmarkId id) const;

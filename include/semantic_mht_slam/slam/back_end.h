@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include "semantic_mht_slam/graph/pose_graph.h"
+#include "semantic_mht_slam/graph/trajectory_correction.h"
+#include "semantic_mht_slam/slam/keyframes.h"
+#include "semantic_mht_slam/slam/loop_closure_record.h"
+#include "semantic_mht_slam/slam/revisit_search.h"
+
+namespace semantic_mht_slam {
+
+/// Everything behind the mapper.
+struct BackEndConfig {
+  bool close_loops = true;
+  bool landmark_factors = true;
+  int closure_stride = 2;
+  double merge_gate_m = 1.0;
+  double loop_cov_scale = 1.0;
+  double loop_floor_m = 0.1;
+  double loop_floor_rad = 0.005;
+  KeyframeConfig keyframe;
+  RevisitConfig revisit;
+  PoseGraphConfig graph;
+};
+
+void describe(BackEndConfig& config, Fields& fields);
+
+/// Ties finished submaps together: keyframes and landmarks go into the pose graph, places that are seen again become
+/// loop closures, and landmarks that turn out to be the same become one.
+class BackEnd {
+ public:
+  BackEnd(const BackEndConfig& config, const ClassTable& classes);
+
+  /// Takes the keyframes of a finished submap and optimises. Returns the landmarks that were found to be the same.
+  std::vector<MergedLandmark> add(std::vector<MapKeyframe> keyframes, const std::vector<MergedLandmark>& merged);
+
+  /// Solves the whole graph.
+  void finish();
+
+  /// Keyframes with their corrected poses.
+  const KeyframeMap& keyframes() const { return map_; }
+
+  /// Correction of the odometry at the newest keyframe.
+  Pose T_map_odom() const;
+
+  /// Corrected pose of a submap, by its index.
+  Pose T_map_submap(int submap) const;
+
+  /// Every closure that was looked at, in the order of the query.
+  const std::vector<LoopClosureRecord>& closures() const { return closures_; }
+
+  /// Corrected position of a landmark, map frame; empty if it is not in the graph.
+  std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;
+
+ private:
+  void addNode(const MapKeyframe& keyframe);
+  void closeLoops(std::size_t first_new);
+  void accept(const LoopClosureRecord& record);
+  bool mergeLandmarks(LandmarkId merged, LandmarkId survivor);
+  void readBack();
+  LandmarkId resolve(LandmarkId id) const;
+
+  BackEndConfig config_;
+  ClassTable classes_;
+  PoseGraph graph_;
+  KeyframeMap map_;
+  std::vector<int> first_keyframe_of_submap_;
+  std::vector<LoopClosureRecord> closures_;
+  std::vector<int> closure_of_loop_;  ///< index into `closures_`, by loop of the graph
+  double closed_at_m_ = 0.0;          ///< distance driven at the last accepted closure
+  std::map<LandmarkId, LandmarkId> survivor_of_;
+  std::map<LandmarkId, std::set<int>> keyframes_of_;  ///< that saw a landmark of the graph
+  std::vector<MergedLandmark> newly_merged_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "semantic_mht_slam/mapping/joint_alignment.h"
+#include "semantic_mht_slam/slam/keyframes.h"
+#include "semantic_mht_slam/slam/loop_closure_record.h"
+
+namespace semantic_mht_slam {
+
+/// How the surroundings of a keyframe are looked for in the earlier map near where the keyframe is believed to be.
+struct RevisitConfig {
+  bool enabled = true;
+  double min_driven_m = 80.0;
+  double max_distance_m = 5.0;
+  double range_m = 40.0;
+  double base_stddev_m = 0.5;
+  double base_stddev_rad = 0.01;
+  double drift_per_m = 0.015;
+  double drift_rad_per_sqrt_m = 0.001;
+  double max_stddev_m = 8.0;
+  double min_log_evidence = 12.0;
+  double min_log_margin = 6.0;
+  JointAlignmentConfig alignment;
+};
+
+void describe(RevisitConfig& config, Fields& fields);
+
+/// Keyframes of the whole drive with their present poses.
+struct KeyframeMap {
+  std::vector<MapKeyframe> keyframes;
+  std::vector<Pose> T_map_keyframe;
+};
+
+/// Lays what a keyframe sees onto what each earlier pass, at least `min_driven_m` before, saw near there, all at once, with
+/// the drift since the last closure as prior (see `alignJointly`). One record for each pass that it might fit.
+/// `drifted_m` was driven since the pose was last tied to the earlier map.
+std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
+                                            const ClassTable& classes, const RevisitConfig& config);
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,154 @@
+#include "semantic_mht_slam/slam/back_end.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace semantic_mht_slam {
+
+void describe(BackEndConfig& config, Fields& fields) {
+  fields.add("close_loops", config.close_loops, "Whether places that are seen again correct the trajectory.");
+  fields.add("landmark_factors", config.landmark_factors, "Whether landmarks take part in the pose graph.");
+  fields.add("closure_stride", config.closure_stride, "", {1, 1000}, "Every n-th keyframe is looked for in the map.");
+  fields.add("merge_gate", config.merge_gate_m, "m", {0.01, 100.0},
+             "Landmarks that a closure pairs are one if they stand no further apart after it.");
+  fields.add("loop_cov_scale", config.loop_cov_scale, "", {0.01, 1e4}, "Factor on the covariance of a loop closure.");
+  fields.add("loop_floor", config.loop_floor_m, "m", {0.001, 10.0}, "Least position deviation of a loop closure.");
+  fields.add("loop_floor_rad", config.loop_floor_rad, "rad", {1e-5, 1.0}, "Least rotation deviation of one.");
+  fields.group("keyframe", config.keyframe);
+  fields.group("revisit", config.revisit);
+  fields.group("graph", config.graph);
+}
+
+BackEnd::BackEnd(const BackEndConfig& config, const ClassTable& classes)
+    : config_(config), classes_(classes), graph_(config.graph) {}
+
+std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes,
+                                         const std::vector<MergedLandmark>& merged) {
+  newly_merged_.clear();
+  const std::size_t first_new = map_.keyframes.size();
+  first_keyframe_of_submap_.push_back(static_cast<int>(first_new));
+  for (MapKeyframe& keyframe : keyframes) {
+    addNode(keyframe);
+    map_.keyframes.push_back(std::move(keyframe));
+    map_.T_map_keyframe.push_back(graph_.pose(graph_.submaps() - 1));
+  }
+  for (const auto& [gone, survivor] : merged) mergeLandmarks(gone, survivor);
+  graph_.optimize();
+  readBack();
+  if (config_.close_loops) closeLoops(first_new);
+  return std::exchange(newly_merged_, {});
+}
+
+void BackEnd::addNode(const MapKeyframe& keyframe) {
+  SubmapNode node;
+  const int index = graph_.submaps();
+  if (index == 0) {
+    node.T_previous_submap = keyframe.T_odom_base;
+  } else {
+    const MapKeyframe& previous = map_.keyframes.back();
+    node.T_previous_submap = previous.T_odom_base.inverse() * keyframe.T_odom_base;
+    const double distance_m = std::max(0.1, keyframe.driven_m - previous.driven_m);
+    const KeyframeConfig& noise = config_.keyframe;
+    node.odometry_cov.setZero();
+    node.odometry_cov.diagonal().head<3>().setConstant(distance_m * noise.odometry_stddev_m * noise.odometry_stddev_m);
+    node.odometry_cov.diagonal().tail<3>().setConstant(distance_m * noise.odometry_stddev_rad *
+                                                       noise.odometry_stddev_rad);
+  }
+  std::set<LandmarkId> taken;
+  for (const KeyframeSighting& sighting : keyframe.sightings) {
+    const ClassInfo& info = classes_[sighting.class_index];
+    if (!config_.landmark_factors || !info.is_static || info.transition != Transition::kDirac) continue;
+    const LandmarkId id = resolve(sighting.landmark);
+    if (!taken.insert(id).second) continue;
+    keyframes_of_[id].insert(index);
+    node.sightings.push_back({static_cast<std::int64_t>(id), sighting.position_m, sighting.cov_m2});
+  }
+  graph_.addSubmap(node);
+}
+
+void BackEnd::closeLoops(std::size_t first_new) {
+  double closed_at_m = closed_at_m_;
+  bool is_closed = false;
+  for (std::size_t k = first_new; k < map_.keyframes.size(); ++k) {
+    if (k % static_cast<std::size_t>(config_.closure_stride) != 0) continue;
+    const double driven_m = map_.keyframes[k].driven_m;
+    for (auto& record : findRevisits(map_, static_cast<int>(k), driven_m - closed_at_m_, classes_, config_.revisit)) {
+      closures_.push_back(std::move(record));
+      if (!closures_.back().is_accepted) continue;
+      accept(closures_.back());
+      closed_at_m = driven_m;
+      is_closed = true;
+    }
+  }
+  if (!is_closed) return;
+  closed_at_m_ = closed_at_m;
+  graph_.optimize();
+  readBack();
+}
+
+void BackEnd::accept(const LoopClosureRecord& record) {
+  LoopConstraint loop;
+  loop.from = record.match_keyframe;
+  loop.to = record.query_keyframe;
+  loop.T_from_to = record.T_match_query;
+  loop.cov = config_.loop_cov_scale * record.cov;
+  loop.cov.diagonal().head<3>().array() += config_.loop_floor_m * config_.loop_floor_m;
+  loop.cov.diagonal().tail<3>().array() += config_.loop_floor_rad * config_.loop_floor_rad;
+  graph_.addLoopClosure(loop);
+  closure_of_loop_.push_back(static_cast<int>(closures_.size()) - 1);
+  for (const auto& [query, match] : record.pairs) mergeLandmarks(query, match);
+}
+
+bool BackEnd::mergeLandmarks(LandmarkId merged, LandmarkId survivor) {
+  merged = resolve(merged);
+  survivor = resolve(survivor);
+  if (merged == survivor) return false;
+  const auto a = keyframes_of_.find(merged);
+  const auto b = keyframes_of_.find(survivor);
+  if (a == keyframes_of_.end() || b == keyframes_of_.end()) return false;
+  for (const int keyframe : a->second) {
+    if (b->second.count(keyframe) > 0) return false;  // seen side by side: two objects
+  }
+  // graph_.mergeLandmarks(static_cast<std::int64_t>(merged), static_cast<std::int64_t>(survivor));
+  b->second.insert(a->second.begin(), a->second.end());
+  keyframes_of_.erase(a);
+  survivor_of_[merged] = survivor;
+  newly_merged_.push_back({merged, survivor});
+  return true;
+}
+
+void BackEnd::readBack() { map_.T_map_keyframe = graph_.poses(); }
+
+void BackEnd::finish() {
+  if (graph_.submaps() == 0) return;
+  graph_.optimizeFully();
+  readBack();
+  for (const LoopDecision& decision : graph_.loopDecisions()) {
+    LoopClosureRecord& record = closures_[static_cast<std::size_t>(closure_of_loop_[static_cast<std::size_t>(decision.loop)])];
+    if (decision.state == LoopState::kAccepted) continue;
+    record.is_accepted = false;
+    record.reason = "refused by the pose graph";
+  }
+}
+
+LandmarkId BackEnd::resolve(LandmarkId id) const {
+  for (auto it = survivor_of_.find(id); it != survivor_of_.end(); it = survivor_of_.find(id)) id = it->second;
+  return id;
+}
+
+Pose BackEnd::T_map_odom() const {
+  if (map_.keyframes.empty()) return Pose::identity();
+  return map_.T_map_keyframe.back() * map_.keyframes.back().T_odom_base.inverse();
+}
+
+Pose BackEnd::T_map_submap(int submap) const {
+  // A submap begins with its first keyframe.
+  const auto keyframe = static_cast<std::size_t>(first_keyframe_of_submap_.at(static_cast<std::size_t>(submap)));
+  return map_.T_map_keyframe[keyframe];
+}
+
+std::optional<Eigen::Vector3d> BackEnd::landmark(LandmarkId id) const {
+  return graph_.landmark(static_cast<std::int64_t>(resolve(id)));
+}
+
+}  // namespace semantic_mht_slam

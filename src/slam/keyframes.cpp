@@ -1,0 +1,135 @@
+#include "semantic_mht_slam/slam/keyframes.h"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace semantic_mht_slam {
+namespace {
+
+/// Sums of a weighted mean.
+struct WeightedSum {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  int count = 0;
+  const MixtureLandmark* landmark = nullptr;
+};
+
+/// The landmarks of a submap that are likely to exist, and which detections are theirs.
+class KeptLandmarks {
+ public:
+  KeptLandmarks(const Submap& submap, double keep_prob) {
+    for (const MixtureLandmark& landmark : submap.landmarks) {
+      if (landmark.existence_prob >= keep_prob) by_id_[landmark.id] = &landmark;
+    }
+    std::map<LandmarkId, LandmarkId> survivor_of;
+    for (const auto& [merged, survivor] : submap.merged) survivor_of[merged] = survivor;
+    for (const DetectionAssociation& association : submap.associations) {
+      LandmarkId id = association.landmark;
+      for (auto it = survivor_of.find(id); it != survivor_of.end(); it = survivor_of.find(id)) id = it->second;
+      const auto found = by_id_.find(id);
+      if (found != by_id_.end()) of_detection_[{association.frame, association.row}] = found->second;
+    }
+  }
+
+  /// The landmark that a detection belongs to; null for none.
+  const MixtureLandmark* of(std::size_t frame, int row) const {
+    const auto found = of_detection_.find({frame, row});
+    return found == of_detection_.end() ? nullptr : found->second;
+  }
+
+ private:
+  std::map<LandmarkId, const MixtureLandmark*> by_id_;
+  std::map<std::pair<std::size_t, int>, const MixtureLandmark*> of_detection_;
+};
+
+/// Collects what one keyframe sees.
+class SightingCollector {
+ public:
+  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const KeyframeConfig& config)
+      : T_keyframe_odom_(T_odom_keyframe.inverse()),
+        T_keyframe_submap_(T_keyframe_odom_ * T_odom_submap),
+        config_(config) {}
+
+  void add(const MixtureLandmark& landmark, const Pose& T_odom_base, double distance_m, const Detection& detection,
+           const Eigen::Matrix3d& detector_cov) {
+    const Pose T_keyframe_base = T_keyframe_odom_ * T_odom_base;
+    const Eigen::Matrix3d R = T_keyframe_base.rotation.toRotationMatrix();
+    const double lever_m = detection.position_m.norm() * config_.odometry_stddev_rad;
+    const double drift_m2 = distance_m * (config_.odometry_stddev_m * config_.odometry_stddev_m + lever_m * lever_m);
+    const Eigen::Matrix3d cov = R * detector_cov * R.transpose() + drift_m2 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d information = cov.inverse();
+    WeightedSum& sum = sums_[landmark.id];
+    sum.landmark = &landmark;
+    sum.information += information;
+    sum.weighted += information * (T_keyframe_base * detection.position_m);
+    ++sum.count;
+  }
+
+  void writeTo(MapKeyframe& keyframe) const {
+    const Eigen::Matrix3d floor =
+        Eigen::Vector3d(config_.sighting_floor_m, config_.sighting_floor_m, config_.vertical_floor_m)
+            .cwiseAbs2()
+            .asDiagonal();
+    const Eigen::Matrix3d scene_floor =
+        config_.sighting_floor_m * config_.sighting_floor_m * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d R = T_keyframe_submap_.rotation.toRotationMatrix();
+    for (const auto& [id, sum] : sums_) {
+      const Eigen::Matrix3d cov = sum.information.inverse();
+      const ClassIndex class_index = sum.landmark->mostLikelyClass();
+      keyframe.sightings.push_back(
+          {id, class_index, cov * sum.weighted, 0.5 * (cov + cov.transpose()) + floor, sum.count});
+      const Eigen::Matrix3d fused_cov = R * sum.landmark->position.cov_m2 * R.transpose();
+      keyframe.scene.objects.push_back({T_keyframe_submap_ * sum.landmark->position.mean_m,
+                                        0.5 * (fused_cov + fused_cov.transpose()) + scene_floor, class_index, id});
+    }
+  }
+
+ private:
+  Pose T_keyframe_odom_;
+  Pose T_keyframe_submap_;
+  const KeyframeConfig& config_;
+  std::map<LandmarkId, WeightedSum> sums_;
+};
+
+}  // namespace
+
+void describe(KeyframeConfig& config, Fields& fields) {
+  fields.add("spacing", config.spacing_m, "m", {0.1, 1000.0}, "Travelled distance between keyframes.");
+  fields.add("sighting_floor", config.sighting_floor_m, "m", {0.001, 10.0},
+             "Deviation of a landmark's position in a keyframe that more detections do not lower.");
+  fields.add("vertical_floor", config.vertical_floor_m, "m", {0.001, 100.0},
+             "The same for its height: of trunks and poles a sensor sees another part from each distance.");
+  fields.add("odometry_stddev", config.odometry_stddev_m, "m/sqrt(m)", {1e-4, 10.0},
+             "Growth of the odometry's position error with the square root of the distance.");
+  fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {1e-6, 1.0},
+             "Growth of the odometry's rotation error with the square root of the distance.");
+}
+
+std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m,
+                                          double keep_prob, const DetectionCov& cov, const KeyframeConfig& config) {
+  const KeptLandmarks landmarks(submap, keep_prob);
+  std::vector<MapKeyframe> keyframes;
+  std::optional<SightingCollector> collector;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Frame& frame = frames[i];
+    if (i > 0) driven_m += (frame.T_odom_base.translation_m - frames[i - 1].T_odom_base.translation_m).norm();
+    if (keyframes.empty() || driven_m - keyframes.back().driven_m >= config.spacing_m) {
+      if (collector) collector->writeTo(keyframes.back());
+      keyframes.push_back({frame.index, frame.stamp, driven_m, frame.T_odom_base, {}, {}});
+      collector.emplace(frame.T_odom_base, submap.T_odom_submap, config);
+    }
+    for (const Detection& detection : frame.detections) {
+      const MixtureLandmark* landmark = landmarks.of(frame.index, detection.row);
+      if (landmark == nullptr) continue;
+      const double distance_m = driven_m - keyframes.back().driven_m;
+      collector->add(*landmark, frame.T_odom_base, distance_m, detection, cov(detection));
+    }
+  }
+  if (collector) collector->writeTo(keyframes.back());
+  return keyframes;
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,153 @@
+#include "semantic_mht_slam/slam/revisit_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace semantic_mht_slam {
+namespace {
+
+/// Mean of what several keyframes say of a landmark.
+struct EarlierLandmark {
+  AlignmentPoint point;
+  int sightings = 0;
+};
+
+AlignmentPoint moved(const Pose& T_a_b, const SceneObject& object) {
+  const Eigen::Matrix3d R = T_a_b.rotation.toRotationMatrix();
+  const Eigen::Matrix3d cov = R * object.cov_m2 * R.transpose();
+  return {T_a_b * object.position_m, 0.5 * (cov + cov.transpose()), object.class_index};
+}
+
+/// What one earlier drive past a place saw there. Each pass has only its own, local odometry error in it, whatever the
+/// drift between passes.
+struct Pass {
+  std::vector<int> keyframes;
+  std::vector<LandmarkId> ids;
+  std::vector<AlignmentPoint> points;
+};
+
+/// Runs of successive keyframes near a position, seen at least `min_driven_m` before.
+std::vector<std::vector<int>> earlierRuns(const KeyframeMap& map, int query, double radius_m, double min_driven_m) {
+  const auto q = static_cast<std::size_t>(query);
+  std::vector<std::vector<int>> runs;
+  for (std::size_t k = 0; k < q; ++k) {
+    if (map.keyframes[q].driven_m - map.keyframes[k].driven_m < min_driven_m) break;
+    const Eigen::Vector3d offset = map.T_map_keyframe[k].translation_m - map.T_map_keyframe[q].translation_m;
+    if (offset.head<2>().norm() > radius_m) continue;
+    const int keyframe = static_cast<int>(k);
+    if (runs.empty() || runs.back().back() + 1 != keyframe) runs.emplace_back();
+    runs.back().push_back(keyframe);
+  }
+  return runs;
+}
+
+Pass makePass(const KeyframeMap& map, const std::vector<int>& keyframes) {
+  std::map<LandmarkId, EarlierLandmark> landmarks;
+  for (const int k : keyframes) {
+    const auto keyframe = static_cast<std::size_t>(k);
+    for (const SceneObject& object : map.keyframes[keyframe].scene.objects) {
+      const AlignmentPoint point = moved(map.T_map_keyframe[keyframe], object);
+      EarlierLandmark& landmark = landmarks[object.landmark];
+      if (++landmark.sightings == 1) {
+        landmark.point = point;
+      } else {
+        landmark.point.position_m += (point.position_m - landmark.point.position_m) / landmark.sightings;
+      }
+    }
+  }
+  Pass pass;
+  pass.keyframes = keyframes;
+  for (const auto& [id, landmark] : landmarks) {
+    pass.ids.push_back(id);
+    pass.points.push_back(landmark.point);
+  }
+  return pass;
+}
+
+/// Covariance of a step on the right of T_match_query from that of position and heading in the map's axes.
+PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_map_query, double tilt_stddev_rad) {
+  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
+  const Eigen::Matrix3d R_query_map = T_map_query.rotation.toRotationMatrix().transpose();
+  J.topLeftCorner<3, 3>() = R_query_map;
+  J.block<3, 1>(3, 3) = R_query_map.col(2);
+  PoseCov result = J * cov * J.transpose();
+  result.diagonal().tail<3>().array() += tilt_stddev_rad * tilt_stddev_rad;
+  return 0.5 * (result + result.transpose());
+}
+
+int nearestKeyframe(const KeyframeMap& map, const std::vector<int>& keyframes, const Eigen::Vector3d& position_m) {
+  return *std::min_element(keyframes.begin(), keyframes.end(), [&](int a, int b) {
+    const auto distance = [&](int k) {
+      return (map.T_map_keyframe[static_cast<std::size_t>(k)].translation_m - position_m).squaredNorm();
+    };
+    return distance(a) < distance(b);
+  });
+}
+
+}  // namespace
+
+void describe(RevisitConfig& config, Fields& fields) {
+  fields.add("enabled", config.enabled, "Whether the surroundings are laid onto the earlier map near the present pose.");
+  fields.add("min_driven", config.min_driven_m, "m", {1.0, 1e6}, "The earlier map is what was seen this far back.");
+  fields.add("max_distance", config.max_distance_m, "m", {0.1, 100.0},
+             "A place is seen again if the sensor comes back at least so near.");
+  fields.add("range", config.range_m, "m", {1.0, 1000.0}, "Keyframes within half of this, and the drift, are used.");
+  fields.add("base_stddev", config.base_stddev_m, "m", {0.01, 100.0}, "Deviation of the prior right after a closure,");
+  fields.add("base_stddev_rad", config.base_stddev_rad, "rad", {1e-4, 3.0}, "and of its heading.");
+  fields.add("drift", config.drift_per_m, "m/m", {0.0, 1.0}, "Growth of the deviation with the distance since then.");
+  fields.add("drift_rad", config.drift_rad_per_sqrt_m, "rad/sqrt(m)", {0.0, 1.0}, "Growth of the heading's deviation.");
+  fields.add("max_stddev", config.max_stddev_m, "m", {0.1, 1000.0}, "The deviation stays below this.");
+  fields.add("min_log_evidence", config.min_log_evidence, "nats", {0.0, 1e6},
+             "Least evidence of an accepted alignment against \"not here before\".");
+  fields.add("min_log_margin", config.min_log_margin, "nats", {0.0, 1e6},
+             "Least evidence over the second best alignment.");
+  fields.group("alignment", config.alignment);
+}
+
+std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
+                                             const ClassTable& classes, const RevisitConfig& config) {
+  const auto q = static_cast<std::size_t>(query);
+  AlignmentPrior prior;
+  prior.T_a_b = map.T_map_keyframe[q];
+  prior.stddev_xy_m = std::min(config.max_stddev_m, config.base_stddev_m + config.drift_per_m * drifted_m);
+  prior.stddev_z_m = std::max(0.5, 0.5 * prior.stddev_xy_m);
+  prior.stddev_yaw_rad = config.base_stddev_rad + config.drift_rad_per_sqrt_m * std::sqrt(drifted_m);
+  std::vector<AlignmentPoint> seen;
+  const Scene& scene = map.keyframes[q].scene;
+  for (const SceneObject& object : scene.objects) {
+    seen.push_back({object.position_m, object.cov_m2, object.class_index});
+  }
+  const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
+  std::vector<LoopClosureRecord> records;
+  for (const std::vector<int>& run : earlierRuns(map, query, radius_m, config.min_driven_m)) {
+    const Pass pass = makePass(map, run);
+    const auto modes = alignJointly(seen, pass.points, prior, classes, config.alignment);
+    if (modes.empty()) continue;
+    const AlignmentHypothesis& best = modes.front();
+    LoopClosureRecord record;
+    record.query_keyframe = query;
+    record.match_keyframe = nearestKeyframe(map, pass.keyframes, best.T_a_b.translation_m);
+    record.T_match_query =
+        map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * best.T_a_b;
+    if (record.T_match_query.translation_m.head<2>().norm() > config.max_distance_m) continue;
+    record.cov = stepCov(best.cov, best.T_a_b, config.alignment.tilt_stddev_rad);
+    record.score = best.log_likelihood;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const int j = best.landmark_for_detection[i];
+      if (j < 0) continue;
+      ++record.inliers;
+      record.pairs.push_back({scene.objects[i].landmark, pass.ids[static_cast<std::size_t>(j)]});
+    }
+    if (best.log_likelihood < config.min_log_evidence) {
+      record.reason = "too little evidence";
+    } else if (modes.size() > 1 && best.log_likelihood - modes[1].log_likelihood < config.min_log_margin) {
+      record.reason = "ambiguous";
+    }
+    record.is_accepted = record.reason.empty();
+    records.push_back(std::move(record));
+  }
+  return records;
+}
+
+}  // namespace semantic_mht_slam
