@@ -25,7 +25,7 @@ struct SightingFactor {
 struct LandmarkState {
   int anchor = 0;  ///< submap that saw it first; corrections move the landmark with it
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of the anchor
-  std::vector<SightingFactor> sightings;
+  std::vector<SightingFactor> sightings;                 ///< ascending submaps
 };
 
 struct PriorFactor {
@@ -37,8 +37,8 @@ struct PriorFactor {
 struct SubmapState {
   std::array<double, kPoseBlock> block;              ///< estimate, as Ceres sees it
   std::unique_ptr<RelativePose3Cost> odometry_cost;  ///< from the submap before; none for the first
-  std::vector<std::int64_t> landmarks;
-  std::vector<int> loops;  ///< loop closures with an end here
+  std::vector<std::int64_t> landmarks;               ///< without duplicates, also where two that it saw were merged
+  std::vector<int> loops;                            ///< loop closures with an end here
   std::vector<PriorFactor> priors;
 
   Pose pose() const {
@@ -60,7 +60,18 @@ struct LoopState3 {
 struct GraphState {
   std::deque<SubmapState> submaps;
   std::map<std::int64_t, LandmarkState> landmarks;
+  std::map<std::int64_t, std::int64_t> merged_landmarks;  ///< number given up -> number that it was merged into
   std::deque<LoopState3> loops;
+
+  /// The number under which a landmark is kept, or the given one if it was never merged.
+  std::int64_t keptNumber(std::int64_t landmark) const;
+
+  /// Adds a sighting by the newest submap.
+  void addSighting(const LandmarkSighting& sighting);
+
+  /// Makes one landmark of two that exist, under the number `survivor`, anchored where either was seen first. Returns
+  /// the submaps that saw one of them, ascending.
+  std::vector<int> mergeLandmarks(std::int64_t merged, std::int64_t survivor);
 
   Eigen::Vector3d landmarkInWorld(const LandmarkState& landmark) const {
     return submaps[landmark.anchor].pose() * landmark.position_m;

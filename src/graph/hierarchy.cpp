@@ -92,8 +92,26 @@ void Hierarchy::addSharedLandmarks(const GraphState& graph, const LoopReview& re
   const std::optional<int> link = addLiftedLink(graph, review, *relation);
   if (!link) return;
   skeleton_.setActive(*link, true);
-  landmark_links_.push_back({link, false});
+  const auto [entry, is_new] = landmark_links_.try_emplace(submap);
+  if (!is_new) skeleton_.setActive(*entry->second.link, false);
+  entry->second = {link, false};
   news_ += skeleton_.mahalanobisSq(*link);
+}
+
+void Hierarchy::linkTouched(const GraphState& graph, const LoopReview& review) {
+  for (const int submap : touched_) addSharedLandmarks(graph, review, submap);
+}
+
+std::vector<int> Hierarchy::takeTouched(const GraphState& graph) {
+  const int newest = static_cast<int>(graph.submaps.size()) - 1;
+  std::set<int> submaps;
+  for (const int submap : touched_) {
+    for (int i = std::max(0, submap - kRepairMargin); i <= std::min(newest, submap + kRepairMargin); ++i) {
+      submaps.insert(i);
+    }
+  }
+  touched_.clear();
+  return {submaps.begin(), submaps.end()};
 }
 
 void Hierarchy::addPriors(GraphState& graph) {
@@ -149,10 +167,11 @@ void Hierarchy::settle() {
     skeleton_.setRobust(*loop.link, true);
     loop.is_settled = true;
   }
-  for (LoopLink& shared : landmark_links_) {
+  for (auto& [submap, shared] : landmark_links_) {
+    if (shared.is_settled) continue;
     const double gap = skeleton_.mahalanobisSq(*shared.link);
-    if (!shared.is_settled && gap > kSwitchOffFactor * config_.loop_gate) skeleton_.setActive(*shared.link, false);
-    if (!shared.is_settled) skeleton_.setRobust(*shared.link, true);
+    if (gap > kSwitchOffFactor * config_.loop_gate) skeleton_.setActive(*shared.link, false);
+    skeleton_.setRobust(*shared.link, true);
     shared.is_settled = true;
   }
 }
@@ -200,6 +219,7 @@ std::vector<int> Hierarchy::takeBentPiece(const GraphState& graph) {
 
 void Hierarchy::finishWhole(const GraphState& graph) {
   std::fill(bend_.begin(), bend_.end(), 0.0);
+  touched_.clear();
   is_pending_ = false;
   news_ = 0.0;
   synchronize(graph);

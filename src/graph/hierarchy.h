@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,15 @@ class Hierarchy {
   /// A node for a new submap if it begins a chunk, a link if it saw old landmarks again; call for every submap once,
   /// after it was optimised with its neighbours.
   void extend(GraphState& graph, const LoopReview& review, int submap);
+
+  /// Landmarks were merged that these submaps saw.
+  void touch(const std::vector<int>& submaps) { touched_.insert(submaps.begin(), submaps.end()); }
+
+  /// Links for touched submaps to where their landmarks, as they are now, were seen first.
+  void linkTouched(const GraphState& graph, const LoopReview& review);
+
+  /// The touched submaps and a few around each, ascending; none is touched any more.
+  std::vector<int> takeTouched(const GraphState& graph);
 
   /// Takes over the states of loop closures and adds new priors; true if the skeleton has to be solved for them.
   bool update(GraphState& graph, const LoopReview& review);
@@ -49,8 +60,8 @@ class Hierarchy {
 
   bool isPending() const { return is_pending_; }
 
-  /// True if links came or went since the skeleton was solved.
-  bool hasNews() const { return is_pending_ || news_ > 0.0; }
+  /// True if links came or went or landmarks were merged since the skeleton was solved.
+  bool hasNews() const { return is_pending_ || news_ > 0.0 || !touched_.empty(); }
 
  private:
   struct LoopLink {
@@ -70,10 +81,11 @@ class Hierarchy {
 
   const PoseGraphConfig& config_;
   Skeleton skeleton_;
-  std::vector<LoopLink> loop_links_;      ///< by loop closure
-  std::vector<LoopLink> landmark_links_;  ///< through landmarks that were seen again
-  std::vector<std::size_t> prior_links_;  ///< per submap: how many of its priors are in
-  std::vector<double> bend_;              ///< per piece of `window_submaps`, metres
+  std::vector<LoopLink> loop_links_;        ///< by loop closure
+  std::map<int, LoopLink> landmark_links_;  ///< through landmarks that were seen again, by the submap that saw them
+  std::set<int> touched_;                   ///< submaps that saw landmarks that were merged
+  std::vector<std::size_t> prior_links_;    ///< per submap: how many of its priors are in
+  std::vector<double> bend_;                ///< per piece of `window_submaps`, metres
   double news_ = 0.0;  ///< Mahalanobis distances squared that loop closures brought since the skeleton was solved
   bool is_pending_ = false;
 };

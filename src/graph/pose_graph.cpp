@@ -15,8 +15,9 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr int kFullIterations = 50;
-constexpr int kRepairIterations = 1;  // an interpolated piece is so near its optimum that one step reaches it
-constexpr double kWindowShare = 0.5;  // of a time budget, so that loop closures get the rest
+constexpr double kFullTolerance = 1e-7;  // of the cost; what is left of the poses is below a centimetre
+constexpr int kRepairIterations = 1;     // an interpolated piece is so near its optimum that one step reaches it
+constexpr double kWindowShare = 0.5;     // of a time budget, so that loop closures get the rest
 
 std::vector<int> range(int first, int end) {
   std::vector<int> numbers(end - first);
@@ -33,6 +34,7 @@ class PoseGraph::Impl {
   int addSubmap(const SubmapNode& node);
   int addLoopClosure(const LoopConstraint& loop);
   void addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov);
+  void mergeLandmarks(std::int64_t merged, std::int64_t survivor);
   PoseGraphUpdate optimize();
   PoseGraphUpdate optimizeFully();
   Subgraph whole(GraphState& graph) const;
@@ -62,16 +64,7 @@ int PoseGraph::Impl::addSubmap(const SubmapNode& node) {
   if (index > 0) {
     submap.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_submap, node.odometry_cov.inverse());
   }
-  for (const LandmarkSighting& sighting : node.sightings) {
-    const auto [entry, is_new] = graph_.landmarks.try_emplace(sighting.landmark);
-    if (is_new) {
-      entry->second.anchor = index;
-      entry->second.position_m = sighting.position_m;
-    }
-    entry->second.sightings.push_back(
-        {index, std::make_unique<PointCost<3>>(sighting.position_m, sighting.cov_m2.inverse())});
-    submap.landmarks.push_back(sighting.landmark);
-  }
+  for (const LandmarkSighting& sighting : node.sightings) graph_.addSighting(sighting);
   review_.extendOdometry(node.T_previous_submap, node.odometry_cov, index == 0);
   return index;
 }
@@ -97,6 +90,14 @@ void PoseGraph::Impl::addPrior(int submap, const Pose& T_world_submap, const Pos
   require(T_world_submap.isValid() && isCovariance6(cov), "a prior is not finite or not positive definite");
   graph_.submaps[submap].priors.push_back(
       {T_world_submap, cov, std::make_unique<RelativePose3Cost>(T_world_submap, cov.inverse())});
+}
+
+void PoseGraph::Impl::mergeLandmarks(std::int64_t merged, std::int64_t survivor) {
+  require(merged != survivor, "a landmark is not merged with itself");
+  const std::int64_t from = graph_.keptNumber(merged);
+  const std::int64_t to = graph_.keptNumber(survivor);
+  require(graph_.landmarks.count(from) > 0 && graph_.landmarks.count(to) > 0, "only landmarks that exist are merged");
+  if (from != to) hierarchy_.touch(graph_.mergeLandmarks(from, to));
 }
 
 /// True if the solution was not cut short.
@@ -138,8 +139,13 @@ PoseGraphUpdate PoseGraph::Impl::optimize() {
               deadline.left_s(kWindowShare), update);
   hierarchy_.synchronize(graph_);
   for (; in_hierarchy_ < count; ++in_hierarchy_) hierarchy_.extend(graph_, review_, in_hierarchy_);
+  hierarchy_.linkTouched(graph_, review_);
   review_.decide(graph_);
   closeLoops(deadline, update);
+  if (!deadline.hasPassed()) {
+    const std::vector<int> touched = hierarchy_.takeTouched(graph_);
+    if (!touched.empty()) solveWindow(touched, config_.window_iterations, deadline.left_s(), update);
+  }
   for (int i = 0; i < config_.repair_windows && !deadline.hasPassed(); ++i) {
     const std::vector<int> bent = hierarchy_.takeBentPiece(graph_);
     if (bent.empty()) break;
@@ -173,7 +179,7 @@ Subgraph PoseGraph::Impl::whole(GraphState& graph) const {
 PoseGraphUpdate PoseGraph::Impl::optimizeFully() {
   PoseGraphUpdate update = optimize();
   if (graph_.submaps.empty()) return update;
-  const Subgraph::Outcome outcome = whole(graph_).optimize(kFullIterations, 0.0);
+  const Subgraph::Outcome outcome = whole(graph_).optimize(kFullIterations, 0.0, kFullTolerance);
   update.iterations += outcome.iterations;
   update.moved_everything = true;
   if (!outcome.failure.empty()) update.failure = outcome.failure;
@@ -218,6 +224,9 @@ int PoseGraph::addLoopClosure(const LoopConstraint& loop) {
 void PoseGraph::addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov) {
   impl_->addPrior(submap, T_world_submap, cov);
 }
+void PoseGraph::mergeLandmarks(std::int64_t merged, std::int64_t survivor) {
+  impl_->mergeLandmarks(merged, survivor);
+}
 PoseGraphUpdate PoseGraph::optimize() {
   return impl_->optimize();
 }
@@ -240,7 +249,7 @@ Pose PoseGraph::pose(int submap) const {
 }
 
 std::optional<Eigen::Vector3d> PoseGraph::landmark(std::int64_t id) const {
-  const auto found = impl_->graph_.landmarks.find(id);
+  const auto found = impl_->graph_.landmarks.find(impl_->graph_.keptNumber(id));
   if (found == impl_->graph_.landmarks.end()) return std::nullopt;
   return impl_->graph_.landmarkInWorld(found->second);
 }
@@ -263,7 +272,7 @@ std::optional<PoseCov> PoseGraph::poseCovariance(int submap) const {
 
 std::optional<Eigen::Matrix3d> PoseGraph::landmarkCovariance(std::int64_t id) const {
   if (submaps() == 0) return std::nullopt;
-  const auto cov = impl_->whole(impl_->graph_).landmarkCovariance(id);
+  const auto cov = impl_->whole(impl_->graph_).landmarkCovariance(impl_->graph_.keptNumber(id));
   if (!cov) return std::nullopt;
   return Eigen::Matrix3d(*cov);
 }

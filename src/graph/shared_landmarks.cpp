@@ -1,5 +1,6 @@
 #include "shared_landmarks.h"
 
+#include <algorithm>
 #include <map>
 
 #include <Eigen/Cholesky>
@@ -38,7 +39,27 @@ std::vector<Pair> withoutOutliers(const std::vector<Pair>& pairs, const Pose& T_
   return kept;
 }
 
-/// The landmarks of a submap that were first seen before the present window, by the chunk where that was.
+Eigen::Matrix3d informationOf(const PointCost<3>& sighting) {
+  return sighting.squareRoot().transpose() * sighting.squareRoot();
+}
+
+/// Where the submaps that saw a landmark first put it, in the world. Its estimate will not do: the newest submaps,
+/// which may be far from where they belong, have already pulled at it.
+Eigen::Vector3d whereFirstSeen(const GraphState& graph, const LandmarkState& landmark, int submaps) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  for (const SightingFactor& sighting : landmark.sightings) {
+    if (sighting.submap >= landmark.anchor + submaps) break;
+    const Pose T_world_submap = graph.submaps[sighting.submap].pose();
+    const Eigen::Matrix3d rotation = T_world_submap.rotation.toRotationMatrix();
+    const Eigen::Matrix3d in_world = rotation * informationOf(*sighting.cost) * rotation.transpose();
+    information += in_world;
+    weighted += in_world * (T_world_submap * sighting.cost->measured());
+  }
+  return information.ldlt().solve(weighted);
+}
+
+/// The sightings of old landmarks, first seen before the present window, by a submap; by the chunk where that was.
 std::map<int, std::vector<Pair>> oldLandmarks(const GraphState& graph, int submap, const PoseGraphConfig& config) {
   std::map<int, std::vector<Pair>> result;
   for (const std::int64_t id : graph.submaps[submap].landmarks) {
@@ -46,11 +67,13 @@ std::map<int, std::vector<Pair>> oldLandmarks(const GraphState& graph, int subma
     if (landmark.anchor > submap - 2 * config.window_submaps) continue;
     const int chunk = landmark.anchor / config.chunk_submaps;
     const Pose T_node_world = graph.submaps[chunk * config.chunk_submaps].pose().inverse();
-    const Pose T_node_anchor = T_node_world * graph.submaps[landmark.anchor].pose();
-    const PointCost<3>& sighting = *landmark.sightings.back().cost;
-    // Half the information: the landmark is not known better than this sighting of it.
-    result[chunk].push_back({sighting.measured(), T_node_anchor * landmark.position_m,
-                             0.5 * sighting.squareRoot().transpose() * sighting.squareRoot()});
+    const Eigen::Vector3d in_node_m = T_node_world * whereFirstSeen(graph, landmark, config.window_submaps);
+    for (auto seen = std::lower_bound(landmark.sightings.begin(), landmark.sightings.end(), submap,
+                                      [](const SightingFactor&a, int number) { return a.submap < number; });
+         seen != landmark.sightings.end() && seen->submap == submap; ++seen) {
+      // Half the information: the landmark is not known better than this sighting of it.
+      result[chunk].push_back({seen->cost->measured(), in_node_m, 0.5 * informationOf(*seen->cost)});
+    }
   }
   return result;
 }

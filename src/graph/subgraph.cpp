@@ -163,14 +163,14 @@ void Subgraph::storeLandmarks() {
   }
 }
 
-Subgraph::Outcome Subgraph::optimize(int max_iterations, double max_seconds) {
+Subgraph::Outcome Subgraph::optimize(int max_iterations, double max_seconds, double tolerance) {
   const std::vector<double> backup = snapshot();
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.initial_trust_region_radius = 1e16;
   options.jacobi_scaling = false;
   options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-4;
+  options.function_tolerance = tolerance;
   options.logging_type = ceres::SILENT;
   if (max_seconds > 0.0) options.max_solver_time_in_seconds = max_seconds;
   ceres::Solver::Summary summary;

@@ -36,8 +36,9 @@ class Subgraph {
     bool out_of_time = false;  ///< stopped by the clock; the result is the best estimate up to then
   };
 
-  /// Optimises and writes the result into the graph. `max_seconds` 0: no limit; the iteration at work is finished.
-  Outcome optimize(int max_iterations, double max_seconds);
+  /// Optimises and writes the result into the graph, until the cost changes by less than `tolerance` of itself.
+  /// `max_seconds` 0: no limit; the iteration at work is finished.
+  Outcome optimize(int max_iterations, double max_seconds, double tolerance = 1e-4);
 
   /// Half the squared whitened errors, without robust losses.
   double cost();

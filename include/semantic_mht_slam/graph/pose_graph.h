@@ -101,7 +101,7 @@ class PoseGraph {
   PoseGraph(PoseGraph&&) noexcept;
   PoseGraph& operator=(PoseGraph&&) noexcept;
 
-  /// Adds a submap behind the newest one and returns its index. A landmark may occur once in a submap.
+  /// Adds a submap behind the newest one and returns its index. A landmark's number may occur once in a submap.
   int addSubmap(const SubmapNode& submap);
 
   /// Adds a loop closure and returns its index. It takes part from the next `optimize` on, if it is accepted there.
@@ -110,7 +110,13 @@ class PoseGraph {
   /// Adds absolute knowledge of a pose; `cov` as in `LoopConstraint` with the world as `from`.
   void addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov);
 
-  /// Brings the estimate up to date after additions, in bounded time.
+  /// Makes one landmark of two: all sightings of `merged` become sightings of `survivor`, also where one submap saw
+  /// both. Afterwards both numbers mean that one landmark, in every call. Acts like a loop closure: the next `optimize`
+  /// brings the places together and optimises the submaps that saw either of them. Landmarks that are one already stay
+  /// so. Throws std::invalid_argument, and changes nothing, if the numbers are equal or no submap saw one of them.
+  void mergeLandmarks(std::int64_t merged, std::int64_t survivor);
+
+  /// Brings the estimate up to date after additions, in time that does not depend on the length of the drive.
   PoseGraphUpdate optimize();
 
   /// Solves the whole graph, in time that grows with it.
