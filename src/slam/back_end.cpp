@@ -9,8 +9,6 @@ void describe(BackEndConfig& config, Fields& fields) {
   fields.add("close_loops", config.close_loops, "Whether places that are seen again correct the trajectory.");
   fields.add("landmark_factors", config.landmark_factors, "Whether landmarks take part in the pose graph.");
   fields.add("closure_stride", config.closure_stride, "", {1, 1000}, "Every n-th keyframe is looked for in the map.");
-  fields.add("merge_gate", config.merge_gate_m, "m", {0.01, 100.0},
-             "Landmarks that a closure pairs are one if they stand no further apart after it.");
   fields.add("loop_cov_scale", config.loop_cov_scale, "", {0.01, 1e4}, "Factor on the covariance of a loop closure.");
   fields.add("loop_floor", config.loop_floor_m, "m", {0.001, 10.0}, "Least position deviation of a loop closure.");
   fields.add("loop_floor_rad", config.loop_floor_rad, "rad", {1e-5, 1.0}, "Least rotation deviation of one.");
@@ -82,8 +80,16 @@ void BackEnd::closeLoops(std::size_t first_new) {
   }
   if (!is_closed) return;
   closed_at_m_ = closed_at_m;
-  graph_.optimize();
+  auto upd = graph_.optimize();
   readBack();
+  if (getenv("DBG")) {
+    fprintf(stderr, "opt fail '%s' it %d everything %d\n", upd.failure.c_str(), upd.iterations, upd.moved_everything);
+    for (auto& c : upd.loop_changes) fprintf(stderr, "  loop %d state %d mah %.1f\n", c.loop, (int)c.state, c.mahalanobis_sq);
+    for (auto& r : closures_) if (r.is_accepted && r.query_keyframe >= (int)first_new) {
+      Pose p = map_.T_map_keyframe[r.match_keyframe].inverse() * map_.T_map_keyframe[r.query_keyframe];
+      fprintf(stderr, "  closure %d-%d resid %.2f %.2f %.2f\n", r.query_keyframe, r.match_keyframe, (p.translation_m - r.T_match_query.translation_m)[0],(p.translation_m - r.T_match_query.translation_m)[1],(p.translation_m - r.T_match_query.translation_m)[2]);
+    }
+  }
 }
 
 void BackEnd::accept(const LoopClosureRecord& record) {
@@ -109,7 +115,7 @@ bool BackEnd::mergeLandmarks(LandmarkId merged, LandmarkId survivor) {
   for (const int keyframe : a->second) {
     if (b->second.count(keyframe) > 0) return false;  // seen side by side: two objects
   }
-  // graph_.mergeLandmarks(static_cast<std::int64_t>(merged), static_cast<std::int64_t>(survivor));
+  graph_.mergeLandmarks(static_cast<std::int64_t>(merged), static_cast<std::int64_t>(survivor));
   b->second.insert(a->second.begin(), a->second.end());
   keyframes_of_.erase(a);
   survivor_of_[merged] = survivor;

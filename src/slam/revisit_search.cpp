@@ -4,8 +4,12 @@
 #include <cmath>
 #include <map>
 
+#include "pose_refinement.h"
+
 namespace semantic_mht_slam {
 namespace {
+
+constexpr double kHuberSigma = 2.0;
 
 /// Mean of what several keyframes say of a landmark.
 struct EarlierLandmark {
@@ -65,15 +69,22 @@ Pass makePass(const KeyframeMap& map, const std::vector<int>& keyframes) {
   return pass;
 }
 
-/// Covariance of a step on the right of T_match_query from that of position and heading in the map's axes.
-PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_map_query, double tilt_stddev_rad) {
-  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
-  const Eigen::Matrix3d R_query_map = T_map_query.rotation.toRotationMatrix().transpose();
-  J.topLeftCorner<3, 3>() = R_query_map;
-  J.block<3, 1>(3, 3) = R_query_map.col(2);
-  PoseCov result = J * cov * J.transpose();
-  result.diagonal().tail<3>().array() += tilt_stddev_rad * tilt_stddev_rad;
-  return 0.5 * (result + result.transpose());
+/// All six degrees of freedom from the pairs that an alignment in position and heading found.
+RefinedPose refined(const AlignmentHypothesis& alignment, const std::vector<AlignmentPoint>& seen, const Pass& pass,
+                    const RevisitConfig& config) {
+  const double floor_m2 = config.alignment.noise_floor_m * config.alignment.noise_floor_m;
+  const Eigen::Matrix3d R = alignment.T_a_b.rotation.toRotationMatrix();
+  std::vector<PointPair> pairs;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const int j = alignment.landmark_for_detection[i];
+    if (j < 0) continue;
+    const AlignmentPoint& landmark = pass.points[static_cast<std::size_t>(j)];
+    PointPair pair{seen[i].position_m, landmark.position_m, R * seen[i].cov_m2 * R.transpose() + landmark.cov_m2};
+    pair.cov_m2.diagonal().array() += floor_m2;
+    pair.cov_m2(2, 2) += config.height_stddev_m * config.height_stddev_m;
+    pairs.push_back(pair);
+  }
+  return refinePose(alignment.T_a_b, pairs, config.alignment.tilt_stddev_rad, kHuberSigma, floor_m2);
 }
 
 int nearestKeyframe(const KeyframeMap& map, const std::vector<int>& keyframes, const Eigen::Vector3d& position_m) {
@@ -86,6 +97,12 @@ int nearestKeyframe(const KeyframeMap& map, const std::vector<int>& keyframes, c
 }
 
 }  // namespace
+
+JointAlignmentConfig RevisitConfig::wideTilt() {
+  JointAlignmentConfig config;
+  config.tilt_stddev_rad = 0.05;
+  return config;
+}
 
 void describe(RevisitConfig& config, Fields& fields) {
   fields.add("enabled", config.enabled, "Whether the surroundings are laid onto the earlier map near the present pose.");
@@ -102,6 +119,10 @@ void describe(RevisitConfig& config, Fields& fields) {
              "Least evidence of an accepted alignment against \"not here before\".");
   fields.add("min_log_margin", config.min_log_margin, "nats", {0.0, 1e6},
              "Least evidence over the second best alignment.");
+  fields.add("pair_distance", config.pair_distance_m, "m", {0.01, 100.0},
+             "Landmarks that an alignment pairs are one if they stand no further apart after it.");
+  fields.add("height_stddev", config.height_stddev_m, "m", {0.001, 100.0},
+             "Further deviation of an object's height: from elsewhere, another part of it is seen.");
   fields.group("alignment", config.alignment);
 }
 
@@ -123,19 +144,24 @@ std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, d
   for (const std::vector<int>& run : earlierRuns(map, query, radius_m, config.min_driven_m)) {
     const Pass pass = makePass(map, run);
     const auto modes = alignJointly(seen, pass.points, prior, classes, config.alignment);
+    if (getenv("DBG")) fprintf(stderr, "try %d drifted %.0f run %d-%d pts %zu seen %zu modes %zu sig %.2f\n", query, drifted_m, run.front(), run.back(), pass.points.size(), seen.size(), modes.size(), prior.stddev_xy_m);
     if (modes.empty()) continue;
     const AlignmentHypothesis& best = modes.front();
     LoopClosureRecord record;
     record.query_keyframe = query;
-    record.match_keyframe = nearestKeyframe(map, pass.keyframes, best.T_a_b.translation_m);
+    const RefinedPose pose = refined(best, seen, pass, config);
+    record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
     record.T_match_query =
-        map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * best.T_a_b;
+        map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
+    if (getenv("DBG")) fprintf(stderr, "q %d drifted %.0f run %d-%d pts %zu seen %zu evid %.1f dist %.1f\n", query, drifted_m, run.front(), run.back(), pass.points.size(), seen.size(), best.log_likelihood, record.T_match_query.translation_m.norm());
     if (record.T_match_query.translation_m.head<2>().norm() > config.max_distance_m) continue;
-    record.cov = stepCov(best.cov, best.T_a_b, config.alignment.tilt_stddev_rad);
+    record.cov = pose.cov;
     record.score = best.log_likelihood;
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const int j = best.landmark_for_detection[i];
       if (j < 0) continue;
+      const Eigen::Vector3d apart_m = pose.T_a_b * seen[i].position_m - pass.points[static_cast<std::size_t>(j)].position_m;
+      if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
       ++record.inliers;
       record.pairs.push_back({scene.objects[i].landmark, pass.ids[static_cast<std::size_t>(j)]});
     }

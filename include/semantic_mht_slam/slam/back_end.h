@@ -17,7 +17,6 @@ struct BackEndConfig {
   bool close_loops = true;
   bool landmark_factors = true;
   int closure_stride = 2;
-  double merge_gate_m = 1.0;
   double loop_cov_scale = 1.0;
   double loop_floor_m = 0.1;
   double loop_floor_rad = 0.005;

@@ -21,7 +21,12 @@ struct RevisitConfig {
   double max_stddev_m = 8.0;
   double min_log_evidence = 12.0;
   double min_log_margin = 6.0;
-  JointAlignmentConfig alignment;
+  double pair_distance_m = 1.0;
+  double height_stddev_m = 0.3;
+  JointAlignmentConfig alignment = wideTilt();
+
+  /// Between two passes roll and pitch drift, too.
+  static JointAlignmentConfig wideTilt();
 };
 
 void describe(RevisitConfig& config, Fields& fields);
