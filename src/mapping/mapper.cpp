@@ -7,8 +7,18 @@
 #include "semantic_mht_slam/mapping/fusion.h"
 
 namespace semantic_mht_slam {
+namespace {
+
+constexpr double kKeyframeSpacing_m = 2.0;  // nearer ones see the same error of a centroid
+
+}  // namespace
+
 Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
-    : config_(config), classes_(classes), calibration_(config.calibration, classes), tree_(config, classes) {}
+    : config_(config),
+      classes_(classes),
+      calibration_(config.calibration, classes),
+      bias_(config.bias, classes),
+      tree_(config, classes) {}
 
 Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
   if (detection.cov_m2) return *detection.cov_m2;
@@ -24,8 +34,8 @@ Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
 
 Measurement Mapper::makeMeasurement(const Detection& detection) const {
   Measurement measurement;
-  measurement.position_m = detection.position_m;
-  measurement.cov_m2 = detectorCov(detection);
+  measurement.position_m = bias_.corrected(detection).position_m;
+  measurement.cov_m2 = detectorCov(detection) + bias_.uncertainty(detection.class_index, detection.position_m);
   const AssociationConfig& association = config_.association;
   const double stddev_m = std::max(association.outlier_min_stddev_m,
                                    association.outlier_factor * std::sqrt(measurement.cov_m2.diagonal().maxCoeff()));
@@ -61,6 +71,7 @@ std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_
     input.measurements.back().id_if_new = next_landmark_++;
     rows_.back().push_back(detection.row);
   }
+  keepKeyframe(input.T_submap_base, detections);
   tree_.step(input, rng);
   return finished;
 }
@@ -71,7 +82,8 @@ void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {
   begin_ = stamp;
   length_m_ = 0.0;
   rows_.clear();
-  const Pose T_old_base = corrected(T_odom_carried_.inverse() * T_odom_base, carried_offset_);
+  keyframes_.clear();
+  const Pose T_old_base = semantic_mht_slam::corrected(T_odom_carried_.inverse() * T_odom_base, carried_offset_);
   tree_.restart(propagated(T_old_base.inverse()));
   T_odom_submap_ = T_odom_base;
 }
@@ -91,6 +103,32 @@ std::vector<TrackedLandmarkPtr> Mapper::propagated(const Pose& T_new_old) const 
   return result;
 }
 
+void Mapper::keepKeyframe(const Pose& T_submap_base, const Detections& detections) {
+  if (!config_.bias.enabled) return;
+  const bool is_far =
+      keyframes_.empty() ||
+      (T_submap_base.translation_m - keyframes_.back().T_submap_base.translation_m).norm() >= kKeyframeSpacing_m;
+  if (is_far) keyframes_.push_back({rows_.size() - 1, T_submap_base, detections});
+}
+
+BiasStretch Mapper::biasStretch(const std::vector<FusedAssociations>& associations) const {
+  BiasStretch stretch;
+  for (const Keyframe& keyframe : keyframes_) {
+    const int index = static_cast<int>(stretch.T_stretch_base.size());
+    stretch.T_stretch_base.push_back(keyframe.T_submap_base);
+    const std::vector<LandmarkId>& landmarks = associations.at(keyframe.place).landmark_of_measurement;
+    for (std::size_t i = 0; i < keyframe.detections.size(); ++i) {
+      if (landmarks[i] == kNoLandmark) continue;
+      const Detection& detection = keyframe.detections[i];
+      Eigen::Matrix3d cov = detectorCov(detection);
+      cov.diagonal().head<2>().array() +=
+          kKeyframeSpacing_m * calibration_.wanderVariancePerMetre(detection.class_index);
+      stretch.observations.push_back({index, detection.position_m, cov, detection.class_index, landmarks[i]});
+    }
+  }
+  return stretch;
+}
+
 std::optional<Submap> Mapper::finish() {
   if (!is_open_) return std::nullopt;
   is_open_ = false;
@@ -105,6 +143,9 @@ std::optional<Submap> Mapper::finish() {
     for (std::size_t i = 0; i < landmark_of_measurement.size(); ++i) {
       submap.associations.push_back({frame, rows_[k][i], landmark_of_measurement[i]});
     }
+  }
+  if (config_.bias.enabled) {
+    bias_.add(biasStretch(fused_associations), config_.submap.odometry_stddev_m, config_.submap.odometry_stddev_rad);
   }
   carried_.clear();
   T_odom_carried_ = T_odom_submap_;

@@ -86,6 +86,7 @@ MapperConfig defaultsOf(Estimator estimator) {
   config.association.split_distance_factor = 0.0;
   config.submap.correct_pose = false;
   config.duplicates.merge = false;
+  config.bias.enabled = false;
   return config;
 }
 
@@ -96,6 +97,7 @@ void describe(MapperConfig& config, Fields& fields) {
   fields.group("detection", config.detection);
   fields.group("submap", config.submap);
   fields.group("calibration", config.calibration);
+  fields.group("bias", config.bias);
   fields.group("duplicates", config.duplicates);
 }
 

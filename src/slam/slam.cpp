@@ -77,6 +77,9 @@ void Slam::processReadyFrames() {
 }
 
 void Slam::take(Submap submap) {
+  for (Frame& frame : submap_frames_) {
+    for (Detection& detection : frame.detections) detection = mapper_->corrected(detection);
+  }
   const DetectionCov cov = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
   auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, cov, keyframe_config_);
   submap_frames_.clear();

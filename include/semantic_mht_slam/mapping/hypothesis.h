@@ -21,6 +21,16 @@ struct Measurement {
   LandmarkId id_if_new = kNoLandmark;  ///< the same in every hypothesis that makes a landmark of it
 };
 
+/// One time step for the tree.
+struct TreeInput {
+  std::size_t frame = 0;
+  int submap = 0;
+  double driven_m = 0.0;                  ///< in this submap
+  double step_m = 0.0;                    ///< driven since the frame before
+  Pose T_submap_base;                     ///< by the odometry
+  std::vector<Measurement> measurements;  ///< base frame, covariance of the detector
+};
+
 /// What one hypothesis believes of one landmark. Shared between hypotheses until it changes.
 struct TrackedLandmark {
   LandmarkId id = kNoLandmark;

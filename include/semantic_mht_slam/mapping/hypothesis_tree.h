@@ -6,19 +6,10 @@
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/mapping/association.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
+#include "semantic_mht_slam/mapping/landmark_tracking.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 
 namespace semantic_mht_slam {
-
-/// One time step for the tree.
-struct TreeInput {
-  std::size_t frame = 0;
-  int submap = 0;
-  double driven_m = 0.0;                  ///< in this submap
-  double step_m = 0.0;                    ///< driven since the frame before
-  Pose T_submap_base;                     ///< by the odometry
-  std::vector<Measurement> measurements;  ///< base frame, covariance of the detector
-};
 
 /// The multiple-hypothesis tree of one submap (paper, section II): its leaves, weighted, by falling weight.
 class MultiHypothesisTree {
@@ -40,23 +31,16 @@ class MultiHypothesisTree {
                    std::vector<Measurement>& measurements) const;
   PoseOffset offsetAfter(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
                          int choice) const;
+  struct Growth;
   void expand(MapHypothesis& parent, const TreeInput& input, std::vector<MapHypothesis>& children);
   MapHypothesis makeChild(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
                           int choice);
-  TrackedLandmarkPtr updated(const TrackedLandmark& landmark, const Measurement& measurement, const TreeInput& input,
-                             const Candidate& candidate) const;
-  TrackedLandmarkPtr makeLandmark(const Measurement& measurement, const TreeInput& input) const;
-  double applyMissedDetections(MapHypothesis& hypothesis, const TreeInput& input,
-                               const std::vector<char>& is_seen) const;
-  double detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const;
-  int splitOf(const AssociationProblem& problem, int measurement, const std::vector<char>& is_seen) const;
-  void normalizeAndSort();
-  void prune(Rng& rng);
-  void resample(Rng& rng);
-  void keepBestThird();
+  void assign(int measurement, int column, const MapHypothesis& parent, const TreeInput& input, Growth& growth) const;
+  int splitOf(int measurement, const std::vector<char>& is_seen) const;
 
   MapperConfig config_;
   AssociationModel model_;
+  LandmarkTracking tracking_;
   int class_count_;
   KBestSolver solver_;
   AssociationProblem problem_;

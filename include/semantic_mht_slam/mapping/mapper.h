@@ -6,6 +6,8 @@
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/common/stamp.h"
 #include "semantic_mht_slam/map/submap.h"
+#include "semantic_mht_slam/mapping/centroid_bias.h"
+#include "semantic_mht_slam/mapping/fusion.h"
 #include "semantic_mht_slam/mapping/hypothesis_tree.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 #include "semantic_mht_slam/models/detection.h"
@@ -34,14 +36,30 @@ class Mapper {
   /// Noise of a detection's centroid as it is known now: its own, else the calibrated one. Base frame, m^2.
   Eigen::Matrix3d detectorCov(const Detection& detection) const;
 
+  /// The detection without the bias of its class's centroids, as estimated from the finished submaps.
+  Detection corrected(const Detection& detection) const { return bias_.corrected(detection); }
+
+  /// Bias of centroids, as estimated from the finished submaps.
+  const CentroidBias& centroidBias() const { return bias_; }
+
  private:
+  /// A frame whose detections say something about the centroids' bias.
+  struct Keyframe {
+    std::size_t place = 0;  ///< in the frames of the submap
+    Pose T_submap_base;     ///< by the odometry
+    Detections detections;  ///< as they came
+  };
+
   void begin(Stamp stamp, const Pose& T_odom_base);
   Measurement makeMeasurement(const Detection& detection) const;
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
+  void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
+  BiasStretch biasStretch(const std::vector<FusedAssociations>& associations) const;
 
   MapperConfig config_;
   ClassTable classes_;
   DetectorCalibration calibration_;
+  CentroidBias bias_;
   MultiHypothesisTree tree_;
   LandmarkId next_landmark_ = 1;
   int index_ = -1;
@@ -51,7 +69,8 @@ class Mapper {
   Pose T_odom_submap_;
   Pose T_odom_last_;
   double length_m_ = 0.0;
-  std::vector<std::vector<int>> rows_;       ///< of the measurements of each frame of this submap
+  std::vector<std::vector<int>> rows_;  ///< of the measurements of each frame of this submap
+  std::vector<Keyframe> keyframes_;
   std::vector<TrackedLandmarkPtr> carried_;  ///< landmarks that go on into the next submap, old submap frame
   Pose T_odom_carried_;
   PoseOffset carried_offset_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/mapping/centroid_bias.h"
 #include "semantic_mht_slam/mapping/detector_calibration.h"
 #include "semantic_mht_slam/mapping/duplicate_merging.h"
 
@@ -77,12 +78,13 @@ struct MapperConfig {
   TreeConfig tree;
   SubmapConfig submap;
   CalibrationConfig calibration;
+  BiasConfig bias;
   DuplicateConfig duplicates;
 };
 
 /// The defaults that belong to an estimator. The baselines are those of the paper: they have neither the Dirichlet
 /// process's count prior nor what goes beyond the paper (pose correction, heavy tails, split objects, merging of
-/// duplicates); each of these can be switched on for them by its own key.
+/// duplicates, centroid bias); each of these can be switched on for them by its own key.
 MapperConfig defaultsOf(Estimator estimator);
 
 void describe(AssociationConfig& config, Fields& fields);

@@ -1,0 +1,245 @@
+#include "bias_equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kRobustPasses = 2;
+constexpr double kCauchySigma = 2.0;
+constexpr int kPoseSize = 4;  // x, y, z, heading
+constexpr int kEntries = 8;   // pose, two knots of the range bias, two of the height bias
+constexpr double kMinRange_m = 1.0;
+constexpr double kGaugeStddev = 1e-3;
+
+/// An equation: landmark = point + J x, with the weight of its 3x3 information.
+struct Row {
+  Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
+  std::array<int, kEntries> index{};
+  Eigen::Matrix<double, 3, kEntries> J = Eigen::Matrix<double, 3, kEntries>::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
+  double weight = 1.0;
+};
+
+using LandmarkRows = std::vector<std::vector<Row>>;
+
+/// Equations in unknowns x: the coefficients first, then scale, direction and slope of this stretch, then the error of
+/// each keyframe's pose.
+class StretchEquations {
+ public:
+  StretchEquations(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise)
+      : stretch_(stretch), layout_(layout), noise_(noise) {
+    size_ = layout.size() + BiasLayout::kMotion + kPoseSize * static_cast<int>(stretch.T_stretch_base.size());
+    collectRows();
+  }
+
+  bool isEmpty() const { return landmarks_.empty(); }
+
+  /// Weighs the rows by their residuals under the best solution so far.
+  void reweigh(const BiasInformation& prior) {
+    BiasInformation all = normalEquations();
+    all.matrix.topLeftCorner(layout_.size(), layout_.size()) += prior.matrix;
+    all.vector.head(layout_.size()) += prior.vector;
+    const Eigen::VectorXd x = all.matrix.ldlt().solve(all.vector);
+    for (std::vector<Row>& rows : landmarks_) reweigh(rows, x);
+  }
+
+  /// What is known of the coefficients without any prior on them.
+  BiasInformation marginal() const {
+    const BiasInformation all = normalEquations();
+    const int m = layout_.size();
+    const int n = size_ - m;
+    const Eigen::LDLT<Eigen::MatrixXd> factor(all.matrix.bottomRightCorner(n, n));
+    const Eigen::MatrixXd cross = all.matrix.topRightCorner(m, n);
+    const Eigen::MatrixXd gain = factor.solve(cross.transpose()).transpose();
+    BiasInformation result;
+    result.matrix = all.matrix.topLeftCorner(m, m) - gain * cross.transpose();
+    result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
+    result.vector = all.vector.head(m) - gain * all.vector.tail(n);
+    return result;
+  }
+
+ private:
+  int motion(int i) const { return layout_.size() + i; }
+  int pose(int keyframe) const { return layout_.size() + BiasLayout::kMotion + kPoseSize * keyframe; }
+
+  void collectRows() {
+    std::map<LandmarkId, std::vector<const BiasObservation*>> by_landmark;
+    for (const BiasObservation& observation : stretch_.observations) {
+      by_landmark[observation.landmark].push_back(&observation);
+    }
+    for (const auto& [id, observations] : by_landmark) {
+      if (static_cast<int>(observations.size()) < noise_.min_observations) continue;
+      const Eigen::Vector3d landmark_m = medianPosition(observations);
+      landmarks_.emplace_back();
+      for (const BiasObservation* observation : observations)
+        landmarks_.back().push_back(row(*observation, landmark_m));
+    }
+  }
+
+  Eigen::Vector3d medianPosition(const std::vector<const BiasObservation*>& observations) const {
+    Eigen::Vector3d result;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::vector<double> values;
+      for (const BiasObservation* observation : observations) {
+        const Pose& T = stretch_.T_stretch_base[static_cast<std::size_t>(observation->keyframe)];
+        values.push_back((T * observation->position_m)[axis]);
+      }
+      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+      result[axis] = values[values.size() / 2];
+    }
+    return result;
+  }
+
+  /// Range and line of sight are those to the landmark: were they the detection's own, its noise would be in both sides
+  /// of the equation, and a bias that grows with the range would make it smaller.
+  Row row(const BiasObservation& observation, const Eigen::Vector3d& landmark_m) const {
+    const Pose& T = stretch_.T_stretch_base[static_cast<std::size_t>(observation.keyframe)];
+    const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
+    const Eigen::Vector3d lever_m = R * observation.position_m;
+    const Eigen::Vector3d ray_m = landmark_m - T.translation_m;
+    const double range_m = std::max(ray_m.norm(), kMinRange_m);
+    const Eigen::Vector3d sight = ray_m / range_m;
+    Row result;
+    result.point_m = lever_m + T.translation_m;
+    result.information = (R * observation.cov_m2 * R.transpose()).inverse();
+    for (int i = 0; i < kPoseSize; ++i) result.index[i] = pose(observation.keyframe) + i;
+    result.J.leftCols<3>().setIdentity();
+    result.J.col(3) << -lever_m.y(), lever_m.x(), 0.0;
+    const BiasBasis basis = biasBasis(range_m);
+    for (int k = 0; k < 2; ++k) {
+      const int knot = std::min(basis.knot + k, BiasLayout::kRangeKnots - 1);
+      const double share = k == 0 ? basis.near_share : basis.far_share;
+      result.index[4 + k] = layout_.range(observation.class_index, knot);
+      result.J.col(4 + k) = -share * sight;
+      result.index[6 + k] = layout_.height(observation.class_index, std::max(knot, 1));
+      if (knot > 0) result.J.col(6 + k) = -share * R.col(2);
+    }
+    return result;
+  }
+
+  BiasInformation normalEquations() const {
+    BiasInformation all{Eigen::MatrixXd::Zero(size_, size_), Eigen::VectorXd::Zero(size_)};
+    for (const std::vector<Row>& rows : landmarks_) addLandmark(rows, all);
+    addMotion(all);
+    return all;
+  }
+
+  /// The equations of one landmark, its position eliminated.
+  void addLandmark(const std::vector<Row>& rows, BiasInformation& all) const {
+    Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(size_, 3);
+    const Eigen::Vector3d origin_m = rows.front().point_m;  // keeps the numbers small
+    for (const Row& row : rows) {
+      const Eigen::Matrix3d W = row.weight * row.information;
+      const Eigen::Matrix<double, kEntries, 3> JtW = row.J.transpose() * W;
+      const Eigen::Matrix<double, kEntries, kEntries> JtWJ = JtW * row.J;
+      const Eigen::Vector3d d = row.point_m - origin_m;
+      const Eigen::Matrix<double, kEntries, 1> JtWd = JtW * d;
+      for (int a = 0; a < kEntries; ++a) {
+        cross.row(row.index[a]) += JtW.row(a);
+        all.vector[row.index[a]] -= JtWd[a];
+        for (int b = 0; b < kEntries; ++b) all.matrix(row.index[a], row.index[b]) += JtWJ(a, b);
+      }
+      total += W;
+      sum += W * d;
+    }
+    const Eigen::Matrix3d inverse = total.inverse();
+    const Eigen::MatrixXd weighted = cross * inverse;
+    all.matrix.noalias() -= weighted * cross.transpose();
+    all.vector += weighted * sum;
+  }
+
+  /// Random walk of the pose's error; scale, direction and slope act on every step.
+  void addMotion(BiasInformation& all) const {
+    for (int i = 0; i < BiasLayout::kMotion; ++i) {
+      all.matrix(motion(i), motion(i)) += 1.0 / (noise_.scale_change_stddev * noise_.scale_change_stddev);
+    }
+    for (int i = 0; i < kPoseSize; ++i) all.matrix(pose(0) + i, pose(0) + i) += 1.0 / (kGaugeStddev * kGaugeStddev);
+    for (std::size_t k = 0; k + 1 < stretch_.T_stretch_base.size(); ++k) addStep(static_cast<int>(k), all);
+  }
+
+  void addStep(int k, BiasInformation& all) const {
+    const Eigen::Vector3d step = stretch_.T_stretch_base[static_cast<std::size_t>(k) + 1].translation_m -
+                                 stretch_.T_stretch_base[static_cast<std::size_t>(k)].translation_m;
+    const double distance_m = std::max(step.norm(), 0.1);
+    constexpr int kColumns = 2 * kPoseSize + 2 * BiasLayout::kMotion;
+    std::array<int, kColumns> index{};
+    Eigen::Matrix<double, kPoseSize, kColumns> J = Eigen::Matrix<double, kPoseSize, kColumns>::Zero();
+    for (int i = 0; i < kPoseSize; ++i) {
+      index[i] = pose(k) + i;
+      index[kPoseSize + i] = pose(k + 1) + i;
+      J(i, i) = -1.0;
+      J(i, kPoseSize + i) = 1.0;
+    }
+    J(0, 3) = step.y();  // an error of the heading turns what is driven next
+    J(1, 3) = -step.x();
+    for (int shared = 0; shared < 2; ++shared) {
+      const int first = 2 * kPoseSize + shared * BiasLayout::kMotion;
+      for (int i = 0; i < BiasLayout::kMotion; ++i) index[first + i] = shared == 1 ? layout_.motion(i) : motion(i);
+      J.col(first).head<3>() = -step;
+      J.col(first + 1).head<2>() << step.y(), -step.x();
+      J(2, first + 2) = -distance_m;
+    }
+    Eigen::Vector4d information = Eigen::Vector4d::Constant(1.0 / (noise_.stddev_m * noise_.stddev_m * distance_m));
+    information[3] = 1.0 / (noise_.stddev_rad * noise_.stddev_rad * distance_m);
+    const Eigen::Matrix<double, kColumns, kColumns> JtWJ = J.transpose() * information.asDiagonal() * J;
+    for (int a = 0; a < kColumns; ++a) {
+      for (int b = 0; b < kColumns; ++b) all.matrix(index[a], index[b]) += JtWJ(a, b);
+    }
+  }
+
+  static void reweigh(std::vector<Row>& rows, const Eigen::VectorXd& x) {
+    std::vector<Eigen::Vector3d> points_m;
+    Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Row& row : rows) {
+      Eigen::Vector3d point_m = row.point_m;
+      for (int a = 0; a < kEntries; ++a) point_m += row.J.col(a) * x[row.index[a]];
+      total += row.weight * row.information;
+      sum += row.weight * row.information * point_m;
+      points_m.push_back(point_m);
+    }
+    const Eigen::Vector3d landmark_m = total.inverse() * sum;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Eigen::Vector3d d = points_m[i] - landmark_m;
+      const double deviations_sq = d.dot(rows[i].information * d) / 3.0;
+      rows[i].weight = 1.0 / (1.0 + deviations_sq / (kCauchySigma * kCauchySigma));
+    }
+  }
+
+  const BiasStretch& stretch_;
+  const BiasLayout& layout_;
+  const BiasMotionNoise& noise_;
+  int size_ = 0;
+  LandmarkRows landmarks_;
+};
+
+}  // namespace
+
+BiasBasis biasBasis(double range_m) {
+  const auto& knots = BiasLayout::kKnots_m;
+  int knot = 0;
+  while (knot + 2 < BiasLayout::kRangeKnots && range_m > knots[static_cast<std::size_t>(knot) + 1]) ++knot;
+  const auto k = static_cast<std::size_t>(knot);
+  const double far_share = (range_m - knots[k]) / (knots[k + 1] - knots[k]);
+  return {knot, 1.0 - far_share, far_share};
+}
+
+BiasInformation biasInformation(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise,
+                                const BiasInformation& prior) {
+  StretchEquations equations(stretch, layout, noise);
+  if (equations.isEmpty()) {
+    return {Eigen::MatrixXd::Zero(layout.size(), layout.size()), Eigen::VectorXd::Zero(layout.size())};
+  }
+  for (int pass = 0; pass < kRobustPasses; ++pass) equations.reweigh(prior);
+  return equations.marginal();
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,147 @@
+#include "semantic_mht_slam/mapping/centroid_bias.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "bias_equations.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kMinPriorStddev_m = 0.05;
+constexpr double kStepFactor = 0.25;  // a change of bias from knot to knot, in range_stddev of the class
+constexpr double kMinRange_m = 0.1;
+
+void addStepPrior(Eigen::MatrixXd& information, int a, int b, double stddev) {
+  const double weight = 1.0 / (stddev * stddev);
+  information(a, a) += weight;
+  information(b, b) += weight;
+  information(a, b) -= weight;
+  information(b, a) -= weight;
+}
+
+/// A level around zero and steps from knot to knot, which are smaller: what a centroid is off by is the size of the
+/// object, from wherever it is seen. In the height only steps.
+void addClassPrior(Eigen::MatrixXd& information, const BiasLayout& layout, ClassIndex c, double level_stddev_m,
+                   double step_stddev_m, double height_stddev_m) {
+  for (int knot = 0; knot < BiasLayout::kRangeKnots; ++knot) {
+    information(layout.range(c, knot), layout.range(c, knot)) += 1.0 / (level_stddev_m * level_stddev_m);
+  }
+  for (int knot = 1; knot < BiasLayout::kRangeKnots; ++knot) {
+    addStepPrior(information, layout.range(c, knot - 1), layout.range(c, knot), step_stddev_m);
+  }
+  information(layout.height(c, 1), layout.height(c, 1)) += 1.0 / (height_stddev_m * height_stddev_m);
+  for (int knot = 2; knot < BiasLayout::kRangeKnots; ++knot) {
+    addStepPrior(information, layout.height(c, knot - 1), layout.height(c, knot), height_stddev_m);
+  }
+}
+
+}  // namespace
+
+void describe(BiasConfig& config, Fields& fields) {
+  fields.add("enabled", config.enabled, "false: centroids are taken to be unbiased (the paper).");
+  fields.add("prior_factor", config.prior_factor, "", {0.01, 100.0},
+             "Deviation of the bias along the line of sight before anything is known, in range_stddev of the class.");
+  fields.add("height_stddev", config.height_stddev_m, "m", {1e-3, 10.0},
+             "Deviation of the change of height over 10 m of range before anything is known.");
+  fields.add("scale_stddev", config.scale_stddev, "", {1e-4, 1.0},
+             "Deviation of the odometry's scale, and of its direction against the sensor's axes in rad.");
+  fields.add("scale_change_stddev", config.scale_change_stddev, "", {1e-4, 1.0},
+             "The same for what differs from submap to submap.");
+  fields.add("min_observations", config.min_observations, "", {2, 1000},
+             "Landmarks seen less often in a submap say nothing.");
+}
+
+CentroidBias::CentroidBias(const BiasConfig& config, const ClassTable& classes)
+    : config_(config), class_count_(classes.size()) {
+  const BiasLayout layout{class_count_};
+  information_ = Eigen::MatrixXd::Zero(layout.size(), layout.size());
+  vector_ = Eigen::VectorXd::Zero(layout.size());
+  for (int c = 0; c < class_count_; ++c) {
+    const double stddev_m = std::max(kMinPriorStddev_m, classes[c].range_stddev_m);
+    addClassPrior(information_, layout, c, config.prior_factor * stddev_m, kStepFactor * stddev_m,
+                  config.height_stddev_m);
+    max_variance_m2_.push_back(stddev_m * stddev_m);
+    has_bias_.push_back(classes[c].transition == Transition::kDirac ||
+                        classes[c].transition_stddev_m <= classes[c].range_stddev_m);
+  }
+  for (int i = 0; i < BiasLayout::kMotion; ++i) {
+    information_(layout.motion(i), layout.motion(i)) += 1.0 / (config.scale_stddev * config.scale_stddev);
+  }
+  solve();
+}
+
+void CentroidBias::add(const BiasStretch& stretch, double odometry_stddev_m, double odometry_stddev_rad) {
+  if (!config_.enabled || stretch.T_stretch_base.size() < 2) return;
+  const BiasLayout layout{class_count_};
+  const BiasMotionNoise noise{std::max(odometry_stddev_m, 1e-3), std::max(odometry_stddev_rad, 1e-5),
+                              config_.scale_change_stddev, config_.min_observations};
+  BiasStretch used{stretch.T_stretch_base, {}};
+  for (const BiasObservation& observation : stretch.observations) {
+    if (has_bias_[static_cast<std::size_t>(observation.class_index)]) used.observations.push_back(observation);
+  }
+  const BiasInformation more = biasInformation(used, layout, noise, {information_, vector_});
+  if (!more.matrix.allFinite() || !more.vector.allFinite()) return;
+  information_ += more.matrix;
+  vector_ += more.vector;
+  solve();
+}
+
+void CentroidBias::solve() {
+  const Eigen::LDLT<Eigen::MatrixXd> factor(information_);
+  cov_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
+  mean_ = cov_ * vector_;
+}
+
+CentroidBiasEstimate CentroidBias::at(ClassIndex class_index, double range_m) const {
+  CentroidBiasEstimate result;
+  if (!config_.enabled || !has_bias_[static_cast<std::size_t>(class_index)]) return result;
+  const BiasLayout layout{class_count_};
+  const BiasBasis basis = biasBasis(range_m);
+  const double a = basis.near_share;
+  const double b = basis.far_share;
+  const int last = std::min(basis.knot + 1, BiasLayout::kRangeKnots - 1);
+  const int i = layout.range(class_index, basis.knot);
+  const int j = layout.range(class_index, last);
+  result.range_m = a * mean_[i] + b * mean_[j];
+  result.range_variance_m2 = a * a * cov_(i, i) + 2.0 * a * b * cov_(i, j) + b * b * cov_(j, j);
+  const int v = layout.height(class_index, last);
+  result.height_m = b * mean_[v];
+  result.height_variance_m2 = b * b * cov_(v, v);
+  if (basis.knot > 0) {
+    const int u = layout.height(class_index, basis.knot);
+    result.height_m += a * mean_[u];
+    result.height_variance_m2 += a * a * cov_(u, u) + 2.0 * a * b * cov_(u, v);
+  }
+  return result;
+}
+
+Eigen::Matrix3d CentroidBias::uncertainty(ClassIndex class_index, const Eigen::Vector3d& position_m) const {
+  const double range_m = position_m.norm();
+  if (!config_.enabled || range_m < kMinRange_m) return Eigen::Matrix3d::Zero();
+  const CentroidBiasEstimate bias = at(class_index, range_m);
+  const Eigen::Vector3d ray = position_m / range_m;
+  const double max_variance_m2 = max_variance_m2_[static_cast<std::size_t>(class_index)];
+  Eigen::Matrix3d cov = std::min(bias.range_variance_m2, max_variance_m2) * ray * ray.transpose();
+  cov(2, 2) += std::min(bias.height_variance_m2, max_variance_m2);
+  return cov;
+}
+
+Detection CentroidBias::corrected(const Detection& detection) const {
+  const double range_m = detection.position_m.norm();
+  if (!config_.enabled || range_m < kMinRange_m) return detection;
+  const CentroidBiasEstimate bias = at(detection.class_index, range_m);
+  Detection result = detection;
+  result.position_m *= std::max(kMinRange_m, range_m - bias.range_m) / range_m;
+  result.position_m.z() -= bias.height_m;
+  if (detection.cov_m2) result.cov_m2 = *detection.cov_m2 + uncertainty(detection.class_index, detection.position_m);
+  return result;
+}
+
+double CentroidBias::odometryScale() const {
+  return mean_[BiasLayout{class_count_}.motion(0)];
+}
+
+}  // namespace semantic_mht_slam

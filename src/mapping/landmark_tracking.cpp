@@ -1,0 +1,93 @@
+#include "semantic_mht_slam/mapping/landmark_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "semantic_mht_slam/common/log_math.h"
+#include "semantic_mht_slam/mapping/existence.h"
+#include "semantic_mht_slam/models/landmark_filter.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kLowDetectionProb = 0.01;    // below this nothing is expected
+constexpr double kMaxLogExistenceOdds = 8.0;  // evidence beyond this would take too many misses to undo
+
+}  // namespace
+
+LandmarkTracking::LandmarkTracking(const MapperConfig& config, const ClassTable& classes)
+    : config_(config), log_class_count_(std::log(static_cast<double>(classes.size()))) {}
+
+TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, const TrackedLandmark& landmark,
+                                             const Measurement& measurement, const TreeInput& input,
+                                             const Candidate& candidate) const {
+  auto result = std::make_shared<TrackedLandmark>(landmark);
+  Gaussian3 predicted = landmark.position;
+  predicted.cov_m2.diagonal().head<2>().array() +=
+      measurement.wander_variance_per_m * (input.driven_m - landmark.updated_at_m);
+  result->updated_at_m = input.driven_m;
+  PositionMeasurement position{measurement.position_m, measurement.cov_m2};
+  if (candidate.is_outlier) position.cov_m2.diagonal() += measurement.outlier_variance_m2;
+  const auto update = unscentedUpdate(predicted, position);
+  if (update) result->position = update->posterior;
+  result->class_probs = model.updatedClassProbs(landmark.class_probs, measurement.class_index);
+  ++result->observations;
+  result->is_from_earlier_submap = false;
+  result->last_submap = input.submap;
+  // A detection where the landmark is speaks for it against clutter, which would be anywhere in the volume.
+  const double log_clutter =
+      std::log(config_.association.false_positive_density) - model.logMapVolume() - log_class_count_;
+  applyHit(*result, detectionProb(landmark, input), config_.detection.visibility_switch_prob,
+           candidate.log_likelihood - log_clutter, kMaxLogExistenceOdds);
+  return result;
+}
+
+TrackedLandmarkPtr LandmarkTracking::begun(const AssociationModel& model, const Measurement& measurement,
+                                           const TreeInput& input) const {
+  auto landmark = std::make_shared<TrackedLandmark>();
+  landmark->id = measurement.id_if_new;
+  landmark->position = {measurement.position_m, measurement.cov_m2};
+  landmark->class_probs = model.initialClassProbs(measurement.class_index);
+  landmark->log_existence_odds = logit(config_.detection.birth_prob);
+  landmark->observations = 1;
+  landmark->first_submap = input.submap;
+  landmark->last_submap = input.submap;
+  landmark->updated_at_m = input.driven_m;
+  return landmark;
+}
+
+double LandmarkTracking::detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const {
+  const DetectionConfig& detection = config_.detection;
+  const double range_m = (landmark.position.mean_m - input.T_submap_base.translation_m).head<2>().norm();
+  if (range_m > detection.max_range_m) return kLowDetectionProb;
+  const double ratio = range_m / detection.half_range_m;
+  return std::max(kLowDetectionProb, detection.detection_prob / (1.0 + ratio * ratio * ratio * ratio));
+}
+
+double LandmarkTracking::applyMissedDetections(MapHypothesis& hypothesis, const TreeInput& input,
+                                               const std::vector<char>& is_seen) const {
+  if (!config_.detection.missed_detections) return 0.0;
+  const double switch_prob = config_.detection.visibility_switch_prob;
+  const double forget_log_odds = logit(config_.detection.forget_prob);
+  double log_weight = 0.0;
+  std::size_t kept = 0;
+  for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
+    TrackedLandmarkPtr landmark = std::move(hypothesis.landmarks[j]);
+    const double detection_prob = detectionProb(*landmark, input);
+    if (is_seen[j] != 0) {
+      log_weight += std::log(detection_prob);
+    } else if (detection_prob > kLowDetectionProb) {
+      auto missed = std::make_shared<TrackedLandmark>(*landmark);
+      const double likelihood = applyMiss(*missed, detection_prob, switch_prob);
+      const double existence = logistic(landmark->log_existence_odds);
+      log_weight += std::log1p(-existence * (1.0 - likelihood));
+      landmark = std::move(missed);
+      if (landmark->log_existence_odds < forget_log_odds) continue;
+    }
+    hypothesis.landmarks[kept++] = std::move(landmark);
+  }
+  hypothesis.landmarks.resize(kept);
+  return log_weight;
+}
+
+}  // namespace semantic_mht_slam
