@@ -34,6 +34,7 @@ void describe(SlamConfig& config, Fields& fields) {
   fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
   fields.group("input", config.input);
   describe(config.mapper, fields);
+  fields.group("place", config.place);
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)

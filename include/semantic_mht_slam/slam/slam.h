@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/mapping/mapper.h"
+#include "semantic_mht_slam/place/place_config.h"
 #include "semantic_mht_slam/slam/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
@@ -31,6 +32,7 @@ struct SlamConfig {
   std::uint64_t seed = 1;
   FrameAssemblerConfig input;
   MapperConfig mapper;
+  PlaceConfig place;
 };
 
 /// The defaults that belong to a method.
