@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "semantic_mht_slam/graph/max_clique.h"
+#include "semantic_mht_slam/common/max_clique.h"
 
 #include "odometry_chain.h"
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "semantic_mht_slam/graph/max_clique.h"
+#include "semantic_mht_slam/common/max_clique.h"
 
 namespace semantic_mht_slam {
 namespace {

@@ -36,6 +36,7 @@ void describe(SlamConfig& config, Fields& fields) {
   fields.group("input", config.input);
   describe(config.mapper, fields);
   fields.group("back_end", config.back_end);
+  fields.group("place", config.place);
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)

@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/graph/max_clique.h"
+#include "semantic_mht_slam/common/max_clique.h"
 
 #include <stdexcept>
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/place/pair_descriptor.h"
+#include "semantic_mht_slam/place/scene_alignment.h"
+
+namespace semantic_mht_slam {
+
+/// Parameters of `PlaceRecognizer`.
+struct PlaceConfig {
+  double recent_m = 80.0;
+  bool drift_gate = true;
+  double gate_base_m = 15.0;
+  double gate_per_driven_m = 0.04;
+  int max_compared = 400;
+  int max_candidates = 8;
+  double min_descriptor_score = 0.2;
+  int min_inliers = 6;
+  int min_classes = 2;
+  double min_spread_m = 2.0;
+  double max_stddev_m = 1.0;
+  double max_stddev_rad = 0.05;
+  double min_share = 0.3;
+  double supported_score = 5.0;
+  double lone_score = 9.0;
+  double rival_ratio = 0.7;
+  double agree_m = 2.0;
+  double agree_rad = 0.06;
+  double support_reach_m = 60.0;
+  PairDescriptorConfig descriptor;
+  SceneAlignmentConfig alignment;
+};
+
+void describe(PlaceConfig& config, Fields& fields);
+
+}  // namespace semantic_mht_slam

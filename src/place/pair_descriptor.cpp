@@ -1,0 +1,61 @@
+#include "semantic_mht_slam/place/pair_descriptor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kReachSigmas = 2.0;
+
+/// Adds a distance to its histogram, as a triangle as wide as the distance is uncertain.
+void spread(double distance_m, double stddev_m, double weight, double bin_m, Eigen::Ref<Eigen::VectorXd> bins) {
+  const double reach_m = std::max(bin_m, kReachSigmas * stddev_m);
+  const int bin_count = static_cast<int>(bins.size());
+  const int first = std::max(0, static_cast<int>(std::ceil((distance_m - reach_m) / bin_m - 0.5)));
+  const int last = std::min(bin_count - 1, static_cast<int>(std::floor((distance_m + reach_m) / bin_m - 0.5)));
+  double total = 0.0;
+  const auto height = [&](int bin) {
+    return std::max(0.0, 1.0 - std::abs((bin + 0.5) * bin_m - distance_m) / reach_m);
+  };
+  for (int bin = first; bin <= last; ++bin) total += height(bin);
+  if (total <= 0.0) return;
+  for (int bin = first; bin <= last; ++bin) bins(bin) += weight * height(bin) / total;
+}
+
+}  // namespace
+
+void describe(PairDescriptorConfig& config, Fields& fields) {
+  fields.add("bin", config.bin_m, "m", {0.1, 20.0}, "Bin of the distances between two objects.");
+  fields.add("max_distance", config.max_distance_m, "m", {1.0, 500.0}, "Pairs further apart are left out.");
+  fields.add("movable_weight", config.movable_weight, "", {0.0, 1.0},
+             "What a pair counts for each end that may drive away.");
+}
+
+PairDescriptor describePairs(const PlanarScene& scene, const ClassTable& classes, const PairDescriptorConfig& config) {
+  const int bins = static_cast<int>(std::ceil(config.max_distance_m / config.bin_m));
+  const int count = classes.size();
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count) * (count + 1) / 2 * bins);
+  for (int i = 0; i < scene.size(); ++i) {
+    for (int k = i + 1; k < scene.size(); ++k) {
+      const PlanarObject& a = scene.objects[i];
+      const PlanarObject& b = scene.objects[k];
+      const double distance_m = (a.position_m - b.position_m).norm();
+      if (distance_m >= config.max_distance_m) continue;
+      const double weight = (classes[a.class_index].is_static ? 1.0 : config.movable_weight) *
+                            (classes[b.class_index].is_static ? 1.0 : config.movable_weight);
+      const Eigen::Index pair = static_cast<Eigen::Index>(b.class_index) * (b.class_index + 1) / 2 + a.class_index;
+      spread(distance_m, std::sqrt(a.variance_m2 + b.variance_m2), weight, config.bin_m,
+             sums.segment(pair * bins, bins));
+    }
+  }
+  const double total = sums.sum();
+  if (total <= 0.0) return PairDescriptor::Zero(sums.size());
+  return (sums / total).cwiseSqrt().cast<float>();
+}
+
+double descriptorSimilarity(const PairDescriptor& a, const PairDescriptor& b) {
+  return std::min(1.0, static_cast<double>(a.dot(b)));
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,282 @@
+#include "semantic_mht_slam/place/place_recognizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kDriftShare = 0.02;      // of neighbouring keyframes relative to each other
+constexpr double kSamePlaceBase_m = 5.0;  // two matches of one keyframe that differ less name one place
+
+double largestHorizontalStddev(const Eigen::Matrix<double, 6, 6>& cov) {
+  const Eigen::Matrix2d horizontal = cov.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(horizontal, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()(1)));
+}
+
+/// Checks of an alignment that need nothing else.
+PlaceRefusal judge(const SceneAlignment& alignment, double rival_score, const PlaceConfig& config) {
+  if (static_cast<int>(alignment.pairs.size()) < config.min_inliers) return PlaceRefusal::kFewInliers;
+  if (alignment.pair_classes < config.min_classes) return PlaceRefusal::kFewClasses;
+  if (alignment.spread_m < config.min_spread_m) return PlaceRefusal::kOnALine;
+  if (largestHorizontalStddev(alignment.cov) > config.max_stddev_m ||
+      std::sqrt(alignment.cov(5, 5)) > config.max_stddev_rad) {
+    return PlaceRefusal::kUncertain;
+  }
+  if (alignment.similarity < config.supported_score ||
+      alignment.similarity < config.min_share * alignment.soft_inliers) {
+    return PlaceRefusal::kLowScore;
+  }
+  if (rival_score > config.rival_ratio * alignment.similarity) return PlaceRefusal::kAmbiguous;
+  return PlaceRefusal::kNone;
+}
+
+bool passed(const PlaceMatch& match) {
+  return match.refusal == PlaceRefusal::kNone;
+}
+
+}  // namespace
+
+std::string reasonText(PlaceRefusal refusal) {
+  switch (refusal) {
+    case PlaceRefusal::kNone:
+      return "";
+    case PlaceRefusal::kUnlikePlace:
+      return "the scenes are not alike";
+    case PlaceRefusal::kNoAlignment:
+      return "no motion lays the scenes onto each other";
+    case PlaceRefusal::kFewInliers:
+      return "too few objects lie on each other";
+    case PlaceRefusal::kFewClasses:
+      return "objects of too few classes lie on each other";
+    case PlaceRefusal::kOnALine:
+      return "the objects stand in one row";
+    case PlaceRefusal::kUncertain:
+      return "the pose stays too uncertain";
+    case PlaceRefusal::kLowScore:
+      return "too little of the scenes lies on each other";
+    case PlaceRefusal::kAmbiguous:
+      return "another alignment is nearly as good";
+    case PlaceRefusal::kOutsideGate:
+      return "further from the estimate than drift explains";
+    case PlaceRefusal::kRivalPlace:
+      return "another place fits nearly as well";
+    case PlaceRefusal::kUnsupported:
+      return "no neighbouring keyframe agrees";
+    case PlaceRefusal::kBetterCandidate:
+      return "another keyframe of the place fits better";
+  }
+  throw std::logic_error("reasonText: no such refusal");
+}
+
+PlaceRecognizer::PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes)
+    : config_(config), classes_(classes) {}
+
+PlaceRecognizer::Place PlaceRecognizer::makePlace(Keyframe keyframe) const {
+  Place place;
+  place.scene = makePlanarScene(keyframe.scene, classes_, config_.alignment.noise_floor_m);
+  place.descriptor = describePairs(place.scene, classes_, config_.descriptor);
+  place.keyframe = std::move(keyframe);
+  place.keyframe.scene = {};
+  return place;
+}
+
+void PlaceRecognizer::add(std::vector<Keyframe> keyframes, std::size_t poses) {
+  if (poses != places_.size() + keyframes.size()) {
+    throw std::invalid_argument("PlaceRecognizer: a pose of every keyframe is needed");
+  }
+  std::vector<Place> added;
+  for (Keyframe& keyframe : keyframes) {
+    const Keyframe* before = !added.empty()     ? &added.back().keyframe
+                             : !places_.empty() ? &places_.back().keyframe
+                                                : nullptr;
+    if (before != nullptr && (keyframe.driven_m < before->driven_m || keyframe.submap < before->submap)) {
+      throw std::invalid_argument("PlaceRecognizer: keyframes must come in the order of the drive");
+    }
+    added.push_back(makePlace(std::move(keyframe)));
+  }
+  for (Place& place : added) places_.push_back(std::move(place));
+}
+
+double PlaceRecognizer::drift(std::size_t query, std::size_t match) const {
+  return config_.gate_per_driven_m * std::abs(places_[query].keyframe.driven_m - places_[match].keyframe.driven_m);
+}
+
+std::vector<std::size_t> PlaceRecognizer::gated(std::size_t query, std::size_t earlier,
+                                                const std::vector<Pose>& T_map_keyframe) const {
+  const Keyframe& asked = places_[query].keyframe;
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < earlier; ++i) {
+    const Keyframe& keyframe = places_[i].keyframe;
+    if (keyframe.submap >= asked.submap || asked.driven_m - keyframe.driven_m < config_.recent_m) break;
+    const double distance_m = (T_map_keyframe[query].translation_m - T_map_keyframe[i].translation_m).head<2>().norm();
+    if (config_.drift_gate && distance_m > config_.gate_base_m + drift(query, i)) continue;
+    near.emplace_back(distance_m, i);
+  }
+  if (config_.drift_gate && near.size() > static_cast<std::size_t>(config_.max_compared)) {
+    std::nth_element(near.begin(), near.begin() + config_.max_compared, near.end());
+    near.resize(config_.max_compared);
+  }
+  std::vector<std::size_t> result;
+  for (const auto& place : near) result.push_back(place.second);
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t query_index,
+                                                 const std::vector<std::size_t>& places) const {
+  std::vector<std::pair<double, std::size_t>> ranked;  // the most alike first
+  for (const std::size_t i : places) {
+    ranked.emplace_back(-descriptorSimilarity(query.descriptor, places_[i].descriptor), i);
+  }
+  const std::size_t count = std::min(ranked.size(), static_cast<std::size_t>(config_.max_candidates));
+  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
+  ranked.resize(count);
+  std::vector<PlaceMatch> matches;
+  for (const auto& [negative_score, i] : ranked) {
+    PlaceMatch match;
+    match.refusal = PlaceRefusal::kUnlikePlace;
+    if (-negative_score >= config_.min_descriptor_score) match = verify(query, i);
+    match.query = query_index;
+    match.match = i;
+    match.descriptor_score = -negative_score;
+    matches.push_back(std::move(match));
+  }
+  std::stable_sort(matches.begin(), matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
+    return passed(a) != passed(b) ? passed(a) : a.verification_score > b.verification_score;
+  });
+  return matches;
+}
+
+PlaceMatch PlaceRecognizer::verify(const Place& query, std::size_t index) const {
+  const Place& place = places_[index];
+  PlaceMatch match;
+  const std::vector<SceneAlignment> alignments = alignScenes(query.scene, place.scene, classes_, config_.alignment);
+  if (alignments.empty()) {
+    match.refusal = PlaceRefusal::kNoAlignment;
+    return match;
+  }
+  const SceneAlignment& best = alignments.front();
+  match.T_match_query = best.T_match_query;
+  match.cov = best.cov;
+  match.inliers = static_cast<int>(best.pairs.size());
+  match.static_inliers = best.static_inliers;
+  match.verification_score = best.similarity;
+  match.scene_score = best.soft_inliers > 0.0 ? std::min(1.0, best.similarity / best.soft_inliers) : 0.0;
+  match.log_evidence = best.log_evidence;
+  if (alignments.size() > 1) match.rival_score = alignments[1].similarity;
+  std::vector<LandmarkId> of_query(query.scene.objects.size());
+  std::vector<LandmarkId> of_match(place.scene.objects.size());
+  for (const PlanarObject& object : query.scene.objects) of_query[object.index] = object.landmark;
+  for (const PlanarObject& object : place.scene.objects) of_match[object.index] = object.landmark;
+  for (const AlignedPair& pair : best.pairs) match.pairs.emplace_back(of_query[pair.query], of_match[pair.match]);
+  match.refusal = judge(best, match.rival_score, config_);
+  return match;
+}
+
+void PlaceRecognizer::refuseOutsideGate(std::vector<PlaceMatch>& matches,
+                                        const std::vector<Pose>& T_map_keyframe) const {
+  for (PlaceMatch& match : matches) {
+    if (!passed(match) || !config_.drift_gate) continue;
+    const Pose T_map_query = T_map_keyframe[match.match] * match.T_match_query;
+    const double distance_m = (T_map_query.translation_m - T_map_keyframe[match.query].translation_m).head<2>().norm();
+    if (distance_m > config_.gate_base_m + drift(match.query, match.match)) match.refusal = PlaceRefusal::kOutsideGate;
+  }
+}
+
+void PlaceRecognizer::refuseRivals(std::vector<PlaceMatch>& matches, const std::vector<Pose>& T_map_keyframe) const {
+  if (matches.empty() || !passed(matches.front())) return;
+  const PlaceMatch& best = matches.front();
+  const Pose T_map_best = T_map_keyframe[best.match] * best.T_match_query;
+  const auto isRival = [&](const PlaceMatch& other) {
+    if (!passed(other) || other.verification_score < config_.rival_ratio * best.verification_score) return false;
+    const Pose T_map_other = T_map_keyframe[other.match] * other.T_match_query;
+    return (T_map_best.translation_m - T_map_other.translation_m).head<2>().norm() >
+           kSamePlaceBase_m + drift(best.match, other.match);
+  };
+  const bool has_rival = std::any_of(matches.begin() + 1, matches.end(), isRival);
+  for (PlaceMatch& match : matches) {
+    if (passed(match)) match.refusal = has_rival ? PlaceRefusal::kRivalPlace : PlaceRefusal::kBetterCandidate;
+  }
+  if (!has_rival) matches.front().refusal = PlaceRefusal::kNone;
+}
+
+bool PlaceRecognizer::agree(const PlaceMatch& a, const PlaceMatch& b, const std::vector<Pose>& T_map_keyframe) const {
+  const auto wayBetween = [this](std::size_t i, std::size_t k) {
+    return std::abs(places_[i].keyframe.driven_m - places_[k].keyframe.driven_m);
+  };
+  const double query_way_m = wayBetween(a.query, b.query);
+  const double match_way_m = wayBetween(a.match, b.match);
+  if (std::max(query_way_m, match_way_m) > config_.support_reach_m) return false;
+  const Pose T_qa_qb = T_map_keyframe[a.query].inverse() * T_map_keyframe[b.query];
+  const Pose T_ma_mb = T_map_keyframe[a.match].inverse() * T_map_keyframe[b.match];
+  const Pose by_a = a.T_match_query * T_qa_qb;
+  const Pose by_b = T_ma_mb * b.T_match_query;
+  return (by_a.translation_m - by_b.translation_m).head<2>().norm() <
+             config_.agree_m + kDriftShare * (query_way_m + match_way_m) &&
+         angularDistance(by_a.rotation, by_b.rotation) < config_.agree_rad;
+}
+
+bool PlaceRecognizer::isSupported(const PlaceMatch& match, const std::vector<PlaceMatch>& others,
+                                  const std::vector<Pose>& T_map_keyframe) const {
+  return std::any_of(others.begin(), others.end(), [&](const PlaceMatch& other) {
+    return other.query != match.query && agree(match, other, T_map_keyframe);
+  });
+}
+
+std::vector<PlaceMatch> PlaceRecognizer::process(std::vector<Keyframe> keyframes,
+                                                 const std::vector<Pose>& T_map_keyframe) {
+  const std::size_t earlier = places_.size();
+  add(std::move(keyframes), T_map_keyframe.size());
+  std::vector<std::vector<PlaceMatch>> of_queries;
+  for (std::size_t query = earlier; query < places_.size(); ++query) {
+    std::vector<PlaceMatch> matches = compare(places_[query], query, gated(query, earlier, T_map_keyframe));
+    refuseOutsideGate(matches, T_map_keyframe);
+    std::stable_partition(matches.begin(), matches.end(), passed);
+    refuseRivals(matches, T_map_keyframe);
+    if (!matches.empty() && passed(matches.front())) recent_.push_back(matches.front());
+    of_queries.push_back(std::move(matches));
+  }
+  std::vector<PlaceMatch> result;
+  for (std::vector<PlaceMatch>& matches : of_queries) {
+    if (!matches.empty() && passed(matches.front())) {
+      PlaceMatch& best = matches.front();
+      best.accepted = best.verification_score >= config_.lone_score || isSupported(best, recent_, T_map_keyframe);
+      if (!best.accepted) best.refusal = PlaceRefusal::kUnsupported;
+    }
+    std::move(matches.begin(), matches.end(), std::back_inserter(result));
+  }
+  if (!places_.empty()) {
+    const double oldest_m = places_.back().keyframe.driven_m - config_.support_reach_m;
+    recent_.erase(
+        std::remove_if(recent_.begin(), recent_.end(),
+                       [&](const PlaceMatch& match) { return places_[match.query].keyframe.driven_m < oldest_m; }),
+        recent_.end());
+  }
+  return result;
+}
+
+std::vector<PlaceMatch> PlaceRecognizer::locate(const Scene& scene, const std::vector<Pose>& T_map_keyframe) const {
+  if (T_map_keyframe.size() != places_.size()) {
+    throw std::invalid_argument("PlaceRecognizer: a pose of every keyframe is needed");
+  }
+  Keyframe keyframe;
+  keyframe.scene = scene;
+  std::vector<std::size_t> all(places_.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<PlaceMatch> matches = compare(makePlace(std::move(keyframe)), places_.size(), all);
+  refuseRivals(matches, T_map_keyframe);
+  if (!matches.empty() && passed(matches.front())) {
+    PlaceMatch& best = matches.front();
+    best.accepted = best.verification_score >= config_.lone_score;
+    if (!best.accepted) best.refusal = PlaceRefusal::kUnsupported;
+  }
+  return matches;
+}
+
+}  // namespace semantic_mht_slam
