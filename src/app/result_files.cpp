@@ -69,13 +69,13 @@ std::string formatAssociations(const std::vector<DetectionAssociation>& associat
 }
 
 std::string formatLoopClosures(const std::vector<LoopClosureResult>& closures) {
-  std::string text = "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw,reason\n";
+  std::string text = "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw,source,reason\n";
   for (const auto& [query_frame, match_frame, record] : closures) {
     text += std::to_string(query_frame) + "," + std::to_string(match_frame) + "," + (record.is_accepted ? "1" : "0") +
             "," + formatFixed(record.score, 4) + "," + std::to_string(record.inliers);
     for (int i = 0; i < 3; ++i) text += "," + formatFixed(record.T_match_query.translation_m[i], 4);
     for (const double q : record.T_match_query.rotation.coeffs()) text += "," + formatFixed(q, 8);
-    text += "," + record.reason + "\n";
+    text += std::string(",") + (record.source == ClosureSource::kPlace ? "place" : "revisit") + "," + record.reason + "\n";
   }
   return text;
 }

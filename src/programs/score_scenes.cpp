@@ -152,7 +152,7 @@ int run(const Arguments& arguments) {
   const FramePairs pairs = readPairs(arguments.pairs, frames);
   std::vector<Pose> T_odom_base;
   if (arguments.window > 0) T_odom_base = readOdometry(arguments, frames);
-  const SceneAlignmentConfig& alignment = config.slam.place.alignment;
+  const SceneAlignmentConfig& alignment = config.slam.back_end.place.alignment;
   Scenes scenes(readObjects(locate(arguments.dataset, arguments.objects), classes, frames), std::move(T_odom_base),
                 arguments.window, classes, alignment.noise_floor_m);
   std::string text = "i,j,score\n";

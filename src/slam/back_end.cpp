@@ -7,18 +7,23 @@ namespace semantic_mht_slam {
 
 void describe(BackEndConfig& config, Fields& fields) {
   fields.add("close_loops", config.close_loops, "Whether places that are seen again correct the trajectory.");
+  fields.add("recognise_places", config.recognise_places,
+             "Whether places are recognised by their objects alone, wherever the pose is believed to be.");
   fields.add("landmark_factors", config.landmark_factors, "Whether landmarks take part in the pose graph.");
   fields.add("closure_stride", config.closure_stride, "", {1, 1000}, "Every n-th keyframe is looked for in the map.");
+  fields.add("max_closure_distance", config.max_closure_distance_m, "m", {0.1, 100.0},
+             "A place is seen again if the sensor comes back at least so near.");
   fields.add("loop_cov_scale", config.loop_cov_scale, "", {0.01, 1e4}, "Factor on the covariance of a loop closure.");
   fields.add("loop_floor", config.loop_floor_m, "m", {0.001, 10.0}, "Least position deviation of a loop closure.");
   fields.add("loop_floor_rad", config.loop_floor_rad, "rad", {1e-5, 1.0}, "Least rotation deviation of one.");
   fields.group("keyframe", config.keyframe);
+  fields.group("place", config.place);
   fields.group("revisit", config.revisit);
   fields.group("graph", config.graph);
 }
 
 BackEnd::BackEnd(const BackEndConfig& config, const ClassTable& classes)
-    : config_(config), classes_(classes), graph_(config.graph) {}
+    : config_(config), classes_(classes), graph_(config.graph), places_(config.place, classes) {}
 
 std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes,
                                          const std::vector<MergedLandmark>& merged) {
@@ -33,7 +38,8 @@ std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes,
   for (const auto& [gone, survivor] : merged) mergeLandmarks(gone, survivor);
   graph_.optimize();
   readBack();
-  if (config_.close_loops) closeLoops(first_new);
+  if (config_.close_loops && config_.recognise_places) recognisePlaces(first_new);
+  if (config_.close_loops && config_.revisit.enabled) findRevisitsOf(first_new);
   return std::exchange(newly_merged_, {});
 }
 
@@ -64,32 +70,65 @@ void BackEnd::addNode(const MapKeyframe& keyframe) {
   graph_.addSubmap(node);
 }
 
-void BackEnd::closeLoops(std::size_t first_new) {
-  double closed_at_m = closed_at_m_;
-  bool is_closed = false;
+void BackEnd::recognisePlaces(std::size_t first_new) {
+  std::vector<Keyframe> keyframes;
   for (std::size_t k = first_new; k < map_.keyframes.size(); ++k) {
     if (k % static_cast<std::size_t>(config_.closure_stride) != 0) continue;
-    const double driven_m = map_.keyframes[k].driven_m;
-    for (auto& record : findRevisits(map_, static_cast<int>(k), driven_m - closed_at_m_, classes_, config_.revisit)) {
-      closures_.push_back(std::move(record));
-      if (!closures_.back().is_accepted) continue;
-      accept(closures_.back());
-      closed_at_m = driven_m;
-      is_closed = true;
+    const MapKeyframe& keyframe = map_.keyframes[k];
+    const int submap = static_cast<int>(first_keyframe_of_submap_.size()) - 1;
+    keyframes.push_back({keyframe.frame, submap, keyframe.driven_m, keyframe.scene});
+    keyframe_of_place_.push_back(static_cast<int>(k));
+  }
+  std::vector<Pose> poses;
+  for (const int k : keyframe_of_place_) poses.push_back(map_.T_map_keyframe[static_cast<std::size_t>(k)]);
+  std::vector<LoopClosureRecord> records;
+  for (PlaceMatch& match : places_.process(std::move(keyframes), poses)) {
+    LoopClosureRecord record;
+    record.source = ClosureSource::kPlace;
+    record.query_keyframe = keyframe_of_place_[match.query];
+    record.match_keyframe = keyframe_of_place_[match.match];
+    record.is_accepted = match.accepted;
+    record.reason = reasonText(match.refusal);
+    record.score = match.verification_score;
+    record.inliers = match.inliers;
+    record.T_match_query = match.T_match_query;
+    record.cov = match.cov;
+    record.pairs = std::move(match.pairs);
+    records.push_back(std::move(record));
+  }
+  close(std::move(records));
+}
+
+void BackEnd::findRevisitsOf(std::size_t first_new) {
+  std::vector<LoopClosureRecord> found;
+  for (std::size_t k = first_new; k < map_.keyframes.size(); ++k) {
+    if (k % static_cast<std::size_t>(config_.closure_stride) != 0) continue;
+    const double drifted_m = std::max(0.0, map_.keyframes[k].driven_m - closed_at_m_);
+    for (auto& record : findRevisits(map_, static_cast<int>(k), drifted_m, classes_, config_.revisit)) {
+      found.push_back(std::move(record));
     }
+  }
+  close(std::move(found));
+}
+
+void BackEnd::close(std::vector<LoopClosureRecord> records) {
+  bool is_closed = false;
+  for (LoopClosureRecord& record : records) {
+    const double distance_m = record.T_match_query.translation_m.head<2>().norm();
+    if (record.is_accepted && distance_m > config_.max_closure_distance_m) {
+      record.is_accepted = false;
+      record.reason = "the sensor did not come back near enough";
+    }
+    closures_.push_back(std::move(record));
+    if (!closures_.back().is_accepted) continue;
+    accept(closures_.back());
+    const auto query = static_cast<std::size_t>(closures_.back().query_keyframe);
+    closed_at_m_ = std::max(closed_at_m_, map_.keyframes[query].driven_m);
+    is_closed = true;
   }
   if (!is_closed) return;
-  closed_at_m_ = closed_at_m;
-  auto upd = graph_.optimize();
+  graph_.optimize();
   readBack();
-  if (getenv("DBG")) {
-    fprintf(stderr, "opt fail '%s' it %d everything %d\n", upd.failure.c_str(), upd.iterations, upd.moved_everything);
-    for (auto& c : upd.loop_changes) fprintf(stderr, "  loop %d state %d mah %.1f\n", c.loop, (int)c.state, c.mahalanobis_sq);
-    for (auto& r : closures_) if (r.is_accepted && r.query_keyframe >= (int)first_new) {
-      Pose p = map_.T_map_keyframe[r.match_keyframe].inverse() * map_.T_map_keyframe[r.query_keyframe];
-      fprintf(stderr, "  closure %d-%d resid %.2f %.2f %.2f\n", r.query_keyframe, r.match_keyframe, (p.translation_m - r.T_match_query.translation_m)[0],(p.translation_m - r.T_match_query.translation_m)[1],(p.translation_m - r.T_match_query.translation_m)[2]);
-    }
-  }
 }
 
 void BackEnd::accept(const LoopClosureRecord& record) {

@@ -107,8 +107,6 @@ JointAlignmentConfig RevisitConfig::wideTilt() {
 void describe(RevisitConfig& config, Fields& fields) {
   fields.add("enabled", config.enabled, "Whether the surroundings are laid onto the earlier map near the present pose.");
   fields.add("min_driven", config.min_driven_m, "m", {1.0, 1e6}, "The earlier map is what was seen this far back.");
-  fields.add("max_distance", config.max_distance_m, "m", {0.1, 100.0},
-             "A place is seen again if the sensor comes back at least so near.");
   fields.add("range", config.range_m, "m", {1.0, 1000.0}, "Keyframes within half of this, and the drift, are used.");
   fields.add("base_stddev", config.base_stddev_m, "m", {0.01, 100.0}, "Deviation of the prior right after a closure,");
   fields.add("base_stddev_rad", config.base_stddev_rad, "rad", {1e-4, 3.0}, "and of its heading.");
@@ -144,7 +142,6 @@ std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, d
   for (const std::vector<int>& run : earlierRuns(map, query, radius_m, config.min_driven_m)) {
     const Pass pass = makePass(map, run);
     const auto modes = alignJointly(seen, pass.points, prior, classes, config.alignment);
-    if (getenv("DBG")) fprintf(stderr, "try %d drifted %.0f run %d-%d pts %zu seen %zu modes %zu sig %.2f\n", query, drifted_m, run.front(), run.back(), pass.points.size(), seen.size(), modes.size(), prior.stddev_xy_m);
     if (modes.empty()) continue;
     const AlignmentHypothesis& best = modes.front();
     LoopClosureRecord record;
@@ -153,8 +150,6 @@ std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, d
     record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
     record.T_match_query =
         map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
-    if (getenv("DBG")) fprintf(stderr, "q %d drifted %.0f run %d-%d pts %zu seen %zu evid %.1f dist %.1f\n", query, drifted_m, run.front(), run.back(), pass.points.size(), seen.size(), best.log_likelihood, record.T_match_query.translation_m.norm());
-    if (record.T_match_query.translation_m.head<2>().norm() > config.max_distance_m) continue;
     record.cov = pose.cov;
     record.score = best.log_likelihood;
     for (std::size_t i = 0; i < seen.size(); ++i) {

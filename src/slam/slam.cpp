@@ -35,8 +35,7 @@ void describe(SlamConfig& config, Fields& fields) {
   fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
   fields.group("input", config.input);
   describe(config.mapper, fields);
-  fields.group("back_end", config.back_end);
-  fields.group("place", config.place);
+  describe(config.back_end, fields);
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)

@@ -6,6 +6,7 @@
 
 #include "semantic_mht_slam/graph/pose_graph.h"
 #include "semantic_mht_slam/graph/trajectory_correction.h"
+#include "semantic_mht_slam/place/place_recognizer.h"
 #include "semantic_mht_slam/slam/keyframes.h"
 #include "semantic_mht_slam/slam/loop_closure_record.h"
 #include "semantic_mht_slam/slam/revisit_search.h"
@@ -15,12 +16,15 @@ namespace semantic_mht_slam {
 /// Everything behind the mapper.
 struct BackEndConfig {
   bool close_loops = true;
+  bool recognise_places = true;
   bool landmark_factors = true;
   int closure_stride = 2;
+  double max_closure_distance_m = 5.0;
   double loop_cov_scale = 1.0;
   double loop_floor_m = 0.1;
   double loop_floor_rad = 0.005;
   KeyframeConfig keyframe;
+  PlaceConfig place;
   RevisitConfig revisit;
   PoseGraphConfig graph;
 };
@@ -56,7 +60,9 @@ class BackEnd {
 
  private:
   void addNode(const MapKeyframe& keyframe);
-  void closeLoops(std::size_t first_new);
+  void recognisePlaces(std::size_t first_new);
+  void findRevisitsOf(std::size_t first_new);
+  void close(std::vector<LoopClosureRecord> records);
   void accept(const LoopClosureRecord& record);
   bool mergeLandmarks(LandmarkId merged, LandmarkId survivor);
   void readBack();
@@ -65,6 +71,8 @@ class BackEnd {
   BackEndConfig config_;
   ClassTable classes_;
   PoseGraph graph_;
+  PlaceRecognizer places_;
+  std::vector<int> keyframe_of_place_;
   KeyframeMap map_;
   std::vector<int> first_keyframe_of_submap_;
   std::vector<LoopClosureRecord> closures_;

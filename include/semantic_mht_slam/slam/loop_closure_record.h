@@ -11,8 +11,15 @@
 
 namespace semantic_mht_slam {
 
+/// How a revisit was found.
+enum class ClosureSource {
+  kPlace,   ///< recognised by its objects alone
+  kRevisit  ///< laid onto the earlier map near the present pose
+};
+
 /// A place that was recognised, or a candidate that was refused.
 struct LoopClosureRecord {
+  ClosureSource source = ClosureSource::kRevisit;
   int query_keyframe = 0;
   int match_keyframe = 0;
   bool is_accepted = false;

@@ -12,7 +12,6 @@ namespace semantic_mht_slam {
 struct RevisitConfig {
   bool enabled = true;
   double min_driven_m = 80.0;
-  double max_distance_m = 5.0;
   double range_m = 40.0;
   double base_stddev_m = 0.5;
   double base_stddev_rad = 0.01;

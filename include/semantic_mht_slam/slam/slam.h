@@ -10,7 +10,6 @@
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/slam/back_end.h"
-#include "semantic_mht_slam/place/place_config.h"
 #include "semantic_mht_slam/slam/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
@@ -34,7 +33,6 @@ struct SlamConfig {
   FrameAssemblerConfig input;
   MapperConfig mapper;
   BackEndConfig back_end;
-  PlaceConfig place;
 };
 
 /// The defaults that belong to a method.
