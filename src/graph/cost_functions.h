@@ -101,4 +101,24 @@ class PointCost final : public ceres::SizedCostFunction<kDim, (kDim == 2 ? 3 : 7
   Matrix sqrt_info_;
 };
 
+/// What is known about a point in the frame of its block.
+class PointPriorCost final : public ceres::SizedCostFunction<3, 3> {
+ public:
+  PointPriorCost(const Eigen::Vector3d& expected_m, const Eigen::Matrix3d& information)
+      : expected_m_(expected_m), sqrt_info_(squareRootInformation(information)) {}
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::Vector3d>(residuals).noalias() =
+        sqrt_info_ * (Eigen::Map<const Eigen::Vector3d>(blocks[0]) - expected_m_);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<RowMajor<3, 3>> by_point(jacobians[0]);
+    by_point = sqrt_info_;
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d expected_m_;
+  Eigen::Matrix3d sqrt_info_;
+};
+
 }  // namespace semantic_mht_slam

@@ -19,18 +19,34 @@ ceres::Problem::Options problemOptions() {
   return options;
 }
 
-/// Sightings of one landmark from held submaps that a subgraph takes at most. Without a limit, every call would grow
-/// with the number of times that a street was driven.
-constexpr std::size_t kMostHeldSightings = 4;
+/// What sightings from held submaps say about a landmark: in its position they are linear, so that any number of them
+/// is one Gaussian. The weight of each under the robust loss is that at the present estimate.
+class HeldSightings {
+ public:
+  HeldSightings(const Eigen::Vector3d& landmark_m, double cauchy_scale)
+      : landmark_m_(landmark_m), scale_sq_(cauchy_scale * cauchy_scale) {}
 
-/// At most `count` >= 2 items, the first, the last and others evenly between them.
-template <class Item>
-std::vector<Item> spread(const std::vector<Item>& items, std::size_t count) {
-  if (items.size() <= count) return items;
-  std::vector<Item> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(items[i * (items.size() - 1) / (count - 1)]);
-  return chosen;
-}
+  void add(const Pose& T_world_submap, const PointCost<3>& sighting) {
+    const Eigen::Matrix3d rotation = T_world_submap.rotation.toRotationMatrix();
+    const Eigen::Matrix3d by_point = sighting.squareRoot() * rotation.transpose();
+    const Eigen::Vector3d seen_m = rotation * sighting.measured() + T_world_submap.translation_m;
+    const double weight = 1.0 / (1.0 + (by_point * (landmark_m_ - seen_m)).squaredNorm() / scale_sq_);
+    const Eigen::Matrix3d information = weight * by_point.transpose() * by_point;
+    information_ += information;
+    weighted_ += information * (seen_m - landmark_m_);
+  }
+
+  bool isEmpty() const { return information_.isZero(0.0); }
+
+  Eigen::Vector3d mean_m() const { return landmark_m_ + information_.ldlt().solve(weighted_); }
+  const Eigen::Matrix3d& information() const { return information_; }
+
+ private:
+  Eigen::Vector3d landmark_m_;
+  double scale_sq_;
+  Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted_ = Eigen::Vector3d::Zero();
+};
 
 /// J^T J of a Jacobian in Ceres's row storage.
 Eigen::SparseMatrix<double> normalMatrix(const ceres::CRSMatrix& jacobian) {
@@ -48,7 +64,8 @@ Subgraph::Subgraph(GraphState& graph, std::vector<int> submaps, Surroundings sur
     : graph_(graph),
       submaps_(std::move(submaps)),
       surroundings_(surroundings),
-      held_(surroundings == Surroundings::kIgnored ? submaps_.front() : 0),
+      fixed_(surroundings == Surroundings::kIgnored ? submaps_.front() : 0),
+      landmark_scale_(config.landmark_cauchy_scale),
       loop_loss_(config.loop_cauchy_scale),
       landmark_loss_(config.landmark_cauchy_scale),
       problem_(problemOptions()) {
@@ -66,7 +83,7 @@ bool Subgraph::isInside(int submap) const {
 }
 
 bool Subgraph::isVariable(int submap) const {
-  return submap != held_ && isInside(submap);
+  return submap != fixed_ && isInside(submap);
 }
 
 /// Adds the block of a submap once; submaps from outside are held.
@@ -124,18 +141,16 @@ void Subgraph::addLandmark(std::int64_t id) {
     problem_.AddResidualBlock(sighting.cost.get(), &landmark_loss_, graph_.submaps[sighting.submap].block.data(),
                               block);
   };
-  std::vector<const SightingFactor*> outside;
+  HeldSightings held(landmarks_.at(id), landmark_scale_);
   for (const SightingFactor& sighting : landmark.sightings) {
     if (isInside(sighting.submap)) {
       addSighting(sighting);
     } else if (surroundings_ == Surroundings::kHeld) {
-      outside.push_back(&sighting);
+      held.add(graph_.submaps[sighting.submap].pose(), *sighting.cost);
     }
   }
-  for (const SightingFactor* sighting : spread(outside, kMostHeldSightings)) {
-    addPose(sighting->submap);
-    addSighting(*sighting);
-  }
+  if (held.isEmpty()) return;
+  problem_.AddResidualBlock(&held_.emplace_back(held.mean_m(), held.information()), nullptr, block);
 }
 
 std::vector<double> Subgraph::snapshot() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,8 +18,7 @@ namespace semantic_mht_slam {
 
 /// Which factors a subgraph takes beside those among its own submaps.
 enum class Surroundings {
-  kHeld,     ///< factors to other submaps count, with the other submap held: for optimising in place; of sightings of
-             ///< one landmark from other submaps a few
+  kHeld,     ///< factors to other submaps count, with the other submap held: for optimising in place
   kIgnored,  ///< only factors inside: for what the subgraph alone knows about its own shape
 };
 
@@ -63,12 +63,14 @@ class Subgraph {
   GraphState& graph_;
   std::vector<int> submaps_;
   Surroundings surroundings_;
-  int held_;
+  int fixed_;
+  double landmark_scale_;
   std::map<std::int64_t, Eigen::Vector3d> landmarks_;  ///< positions in the world frame while this object lives
   std::array<double, kPoseBlock> world_{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
   ceres::CauchyLoss loop_loss_;
   ceres::CauchyLoss landmark_loss_;
   PoseManifold manifold_;
+  std::deque<PointPriorCost> held_;  ///< what sightings from held submaps say, one a landmark
   ceres::Problem problem_;
 };
 

@@ -20,7 +20,7 @@ using PoseCov = Eigen::Matrix<double, 6, 6>;
 /// Parameters of `PoseGraph`.
 struct PoseGraphConfig {
   double loop_cauchy_scale = 1.0;
-  double landmark_cauchy_scale = 1.0;
+  double landmark_cauchy_scale = 2.8;
   int window_submaps = 8;
   int chunk_submaps = 10;
   int window_iterations = 3;
