@@ -11,6 +11,7 @@ PACKAGES=(
   librosbag-dev python3-rosbag libvisualization-msgs-dev libnav-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-msgs python3-visualization-msgs
   libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
+  libflann-dev liblz4-dev libopencv-dev
   rviz libgl1-mesa-dri xvfb xauth imagemagick
   libgtest-dev libbenchmark-dev
 )
