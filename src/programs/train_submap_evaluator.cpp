@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kUsage =
     "Trains the decision tree that picks the submaps worth a search for loop closures, on drives whose truth is "
     "known.\n"
-    "A submap is worth it if it holds a place that was driven through before.\n"
+    "A submap is worth it if a place in it was driven through before and landmarks of it were mapped then.\n"
     "  train_submap_evaluator --scenario FILE ... [--seeds A-B] [--dataset DIR ...] --output FILE\n"
     "  train_submap_evaluator --scenario FILE ... [--seeds A-B] [--dataset DIR ...] --test FILE\n";
 
@@ -117,20 +117,20 @@ std::string describeDrives(const Arguments& arguments, const ChoiceScore& score)
     names.push_back("simulated " + std::filesystem::path(scenario).stem().string() + ", seeds " + arguments.seeds);
   }
   for (const std::string& folder : arguments.datasets) names.push_back("recorded " + folder);
-  return joined(names, "; ") + ": " + std::to_string(score.submaps) + " submaps, " + std::to_string(score.good) +
-         " revisited";
+  return joined(names, "; ") + ": " + std::to_string(score.submaps) + " submaps, " + std::to_string(score.revisits) +
+         " revisits, " + std::to_string(score.good) + " recognisable";
 }
 
 void print(const std::string& title, const ChoiceScore& score) {
-  std::printf("%s: precision %.3f, recall %.3f, %.1f %% of the submaps skipped\n", title.c_str(), score.precision(),
-              score.recall(), 100.0 * score.skipped());
+  std::printf("%s: precision %.3f, recall %.3f (of all revisits %.3f), %.1f %% of the submaps skipped\n", title.c_str(),
+              score.precision(), score.recall(), score.revisitRecall(), 100.0 * score.skipped());
 }
 
 void printEach(const std::vector<LabelledDrive>& drives, const SubmapClassifier& classifier) {
   for (const LabelledDrive& drive : drives) {
     const ChoiceScore score = scoreChoice({drive}, classifier);
-    std::printf("%-28s %4d submaps, %3d revisited, %3d skipped, %d revisits lost\n", drive.name.c_str(), score.submaps,
-                score.good, score.submaps - score.chosen, score.good - score.chosen_good);
+    std::printf("%-28s %4d submaps, %3d skipped; %3d recognisable revisits, %d lost\n", drive.name.c_str(),
+                score.submaps, score.submaps - score.chosen, score.good, score.good - score.chosen_good);
   }
 }
 

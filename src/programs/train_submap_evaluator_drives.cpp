@@ -1,11 +1,14 @@
 #include "train_submap_evaluator_drives.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "semantic_mht_slam/app/recording.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/simulation/simulator.h"
+#include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -21,14 +24,14 @@ std::vector<double> drivenLengths(const std::vector<Pose>& T_map_base) {
   return driven_m;
 }
 
-// For each frame, whether its place had been driven through before.
-std::vector<bool> findRevisits(const std::vector<Pose>& T_map_base) {
+// For each frame, the earlier frames at its place.
+std::vector<std::vector<int>> findRevisits(const std::vector<Pose>& T_map_base) {
   const std::vector<double> driven_m = drivenLengths(T_map_base);
-  std::vector<bool> is_revisit(T_map_base.size(), false);
+  std::vector<std::vector<int>> earlier(T_map_base.size());
   for (const auto& [i, j] : findLoopPairs(T_map_base)) {
-    if (driven_m[i] - driven_m[j] >= kMinLoop_m) is_revisit[i] = true;
+    if (driven_m[i] - driven_m[j] >= kMinLoop_m) earlier[i].push_back(j);
   }
-  return is_revisit;
+  return earlier;
 }
 
 Slam runSlam(const Recording& recording, const SlamConfig& config, const ClassTable& classes) {
@@ -44,19 +47,67 @@ Slam runSlam(const Recording& recording, const SlamConfig& config, const ClassTa
   return slam;
 }
 
+// A finished submap with its frames and what of it stays where it is, by the true pose of its first frame.
+struct TrueSubmap {
+  std::vector<std::size_t> frames;
+  std::vector<MixtureLandmark> landmarks;  ///< true map frame
+};
+
+TrueSubmap toTrueSubmap(const Submap& submap, const Dataset& dataset, const ClassTable& classes) {
+  TrueSubmap result;
+  for (std::size_t i = 0; i < dataset.stamps.size(); ++i) {
+    if (dataset.stamps[i] >= submap.begin && dataset.stamps[i] <= submap.end) result.frames.push_back(i);
+  }
+  if (result.frames.empty()) return result;
+  const Pose& T_map_submap = (*dataset.T_map_base)[result.frames.front()];
+  for (const MixtureLandmark& landmark : submap.landmarks) {
+    if (landmark.existence_prob < 0.5 || !classes[landmark.mostLikelyClass()].is_static) continue;
+    result.landmarks.push_back(transformed(T_map_submap, landmark));
+  }
+  return result;
+}
+
+bool isIn(const MixtureLandmark& landmark, const std::vector<MixtureLandmark>& landmarks) {
+  constexpr double kMaxDistance_m = 1.0;
+  return std::any_of(landmarks.begin(), landmarks.end(), [&](const MixtureLandmark& other) {
+    const Eigen::Vector3d offset_m = landmark.position.mean_m - other.position.mean_m;
+    return other.mostLikelyClass() == landmark.mostLikelyClass() && offset_m.head<2>().norm() < kMaxDistance_m;
+  });
+}
+
+bool shareLandmarks(const TrueSubmap& a, const TrueSubmap& b) {
+  const auto common = std::count_if(a.landmarks.begin(), a.landmarks.end(),
+                                    [&](const MixtureLandmark& landmark) { return isIn(landmark, b.landmarks); });
+  return common >= kMinCommonLandmarks;
+}
+
+// The submaps before `index` with a frame at a place of it.
+std::set<std::size_t> revisitedSubmaps(const std::vector<TrueSubmap>& submaps, std::size_t index,
+                                       const std::vector<std::vector<int>>& earlier) {
+  std::set<int> frames;
+  for (const std::size_t i : submaps[index].frames) frames.insert(earlier[i].begin(), earlier[i].end());
+  std::set<std::size_t> revisited;
+  for (std::size_t k = 0; k < index; ++k) {
+    if (submaps[k].frames.empty()) continue;
+    const auto first = frames.lower_bound(static_cast<int>(submaps[k].frames.front()));
+    if (first != frames.end() && *first <= static_cast<int>(submaps[k].frames.back())) revisited.insert(k);
+  }
+  return revisited;
+}
+
 LabelledDrive labelledDrive(const std::string& name, const Dataset& dataset, const SlamConfig& config,
                             const ClassTable& classes) {
-  const std::vector<bool> is_revisit = findRevisits(*dataset.T_map_base);
+  const auto earlier = findRevisits(*dataset.T_map_base);
   const Slam slam = runSlam(toRecording(dataset), config, classes);
   LabelledDrive drive{name, {}};
   SubmapFeatureExtractor extractor(classes.size());
+  std::vector<TrueSubmap> submaps;
   for (const auto& submap : slam.map().submaps()) {
-    DrivenSubmap driven{extractor.add(*submap), false};
-    for (std::size_t i = 0; i < dataset.stamps.size(); ++i) {
-      const bool is_within = dataset.stamps[i] >= submap->begin && dataset.stamps[i] <= submap->end;
-      driven.is_good = driven.is_good || (is_within && is_revisit[i]);
-    }
-    drive.submaps.push_back(driven);
+    submaps.push_back(toTrueSubmap(*submap, dataset, classes));
+    const auto revisited = revisitedSubmaps(submaps, submaps.size() - 1, earlier);
+    const bool is_good = std::any_of(revisited.begin(), revisited.end(),
+                                     [&](std::size_t k) { return shareLandmarks(submaps.back(), submaps[k]); });
+    drive.submaps.push_back({extractor.add(*submap), !revisited.empty(), is_good});
   }
   return drive;
 }

@@ -13,13 +13,15 @@ constexpr std::size_t kFolds = 10;
 
 struct Prediction {
   double good_prob = 0.0;  // -1 without landmarks: never searched
+  bool is_revisit = false;
   bool is_good = false;
 };
 
 std::vector<Prediction> predict(const LabelledDrive& drive, const SubmapClassifier& classifier) {
   std::vector<Prediction> predictions;
   for (const DrivenSubmap& submap : drive.submaps) {
-    predictions.push_back({submap.features ? classifier.goodProb(*submap.features) : -1.0, submap.is_good});
+    const double good_prob = submap.features ? classifier.goodProb(*submap.features) : -1.0;
+    predictions.push_back({good_prob, submap.is_revisit, submap.is_good});
   }
   return predictions;
 }
@@ -29,9 +31,11 @@ ChoiceScore scoreOf(const std::vector<Prediction>& predictions, double min_prob)
   for (const Prediction& prediction : predictions) {
     const bool is_chosen = prediction.good_prob >= min_prob;
     ++score.submaps;
-    score.good += prediction.is_good ? 1 : 0;
-    score.chosen += is_chosen ? 1 : 0;
-    score.chosen_good += is_chosen && prediction.is_good ? 1 : 0;
+    score.revisits += prediction.is_revisit;
+    score.good += prediction.is_good;
+    score.chosen += is_chosen;
+    score.chosen_revisits += is_chosen && prediction.is_revisit;
+    score.chosen_good += is_chosen && prediction.is_good;
   }
   return score;
 }

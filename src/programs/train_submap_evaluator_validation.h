@@ -12,12 +12,15 @@ namespace semantic_mht_slam {
 /// How well a choice of submaps does. Shares of nothing are 0.
 struct ChoiceScore {
   int submaps = 0;
-  int good = 0;
+  int revisits = 0;  ///< submaps with a place that had been driven through before
+  int good = 0;      ///< those of them that can be recognised
   int chosen = 0;
+  int chosen_revisits = 0;
   int chosen_good = 0;
 
   double precision() const { return share(chosen_good, chosen); }
   double recall() const { return share(chosen_good, good); }
+  double revisitRecall() const { return share(chosen_revisits, revisits); }
   double skipped() const { return share(submaps - chosen, submaps); }
 
  private:

@@ -11,11 +11,10 @@ namespace semantic_mht_slam {
 /// and columns, symmetric.
 ///
 /// A sums the weights of the pairs of objects between two classes, each pair once; D holds the degrees, to which a pair
-/// adds at both of its ends. Pairs within a class therefore stay in the diagonal instead of cancelling out, and a
-/// street of nothing but poles has a topology as well. A pair weighs as much as in the covisibility graph if both
-/// objects are landmarks which it saw together, else the distance kernel alone. It depends on distances only, hence
-/// neither on where the scene is seen from nor in which direction. Throws std::invalid_argument for a class outside the
-/// table.
+/// adds at both of its ends. Pairs within a class therefore stay in the diagonal instead of cancelling out. A pair
+/// weighs as much as in the covisibility graph if both objects are landmarks which it saw together, else the distance
+/// kernel alone. It depends on distances only, hence neither on where the scene is seen from nor in which direction.
+/// Throws std::invalid_argument for a class outside the table.
 Eigen::MatrixXd classLaplacian(const Scene& scene, int classes, const CovisibilityGraph& graph,
                                const CovisibilityConfig& config);
 
