@@ -51,14 +51,22 @@ std::vector<Point> principalPointsOf(const Scene& scene) {
   return points;
 }
 
-double pairScore(const Point& a, const Point& b, double scaled_distance, const SceneScoreConfig& config) {
+// The printed formula does not tell a good match from a bad one of other classes: both add nearly 1. Which way round
+// two scenes fit is therefore judged by similarity.
+struct Match {
+  double similarity = 0.0;
+  double score = 0.0;
+};
+
+Match matchOf(const Point& a, const Point& b, double scaled_distance, const SceneScoreConfig& config) {
   const double s_match = 1.0 - scaled_distance / 2.0;
   const double s_class = a.class_index == b.class_index ? 0.0 : config.class_penalty;
-  return config.formula == PairScoreFormula::kSimilarity ? s_match * (1.0 - s_class) : 1.0 - s_match * s_class;
+  const double similarity = s_match * (1.0 - s_class);
+  return {similarity, config.formula == PairScoreFormula::kSimilarity ? similarity : 1.0 - s_match * s_class};
 }
 
 // `rows` has at most as many points as `columns`.
-double matchScore(const std::vector<Point>& rows, const std::vector<Point>& columns, const SceneScoreConfig& config) {
+Match matchOf(const std::vector<Point>& rows, const std::vector<Point>& columns, const SceneScoreConfig& config) {
   SparseCostMatrix costs;
   costs.clear(static_cast<int>(columns.size()));
   for (const Point& row : rows) {
@@ -69,19 +77,23 @@ double matchScore(const std::vector<Point>& rows, const std::vector<Point>& colu
     }
   }
   const auto assignment = AssignmentSolver().solve(costs);
-  double sum = 0.0;
+  Match sum;
   for (int i = 0; i < costs.rows(); ++i) {
     const int j = assignment->column_for_row[i];
-    sum += pairScore(rows[i], columns[j], costs.cost(costs.rowBegin(i) + j), config);
+    const Match match = matchOf(rows[i], columns[j], costs.cost(costs.rowBegin(i) + j), config);
+    sum.similarity += match.similarity;
+    sum.score += match.score;
   }
-  return sum / static_cast<double>(rows.size());
+  const auto pairs = static_cast<double>(rows.size());
+  return {sum.similarity / pairs, sum.score / pairs};
 }
 
 }  // namespace
 
 void describe(SceneScoreConfig& config, Fields& fields) {
-  fields.add<SceneFrame>("frame", config.frame, {{"base", SceneFrame::kBase}, {"principal", SceneFrame::kPrincipal}},
-                         "Frame in which landmarks of two scenes are matched: the sensor's, or the principal axes.");
+  fields.add<SceneFrame>(
+      "frame", config.frame, {{"base", SceneFrame::kBase}, {"principal", SceneFrame::kPrincipal}},
+      "Frame in which landmarks of two scenes are matched: the sensor's, or the scene's principal axes.");
   fields.add<PairScoreFormula>(
       "formula", config.formula,
       {{"similarity", PairScoreFormula::kSimilarity}, {"as_printed", PairScoreFormula::kAsPrinted}},
@@ -96,12 +108,13 @@ double sceneScore(const Scene& a, const Scene& b, const SceneScoreConfig& config
   const Scene& smaller = a.objects.size() <= b.objects.size() ? a : b;
   const Scene& larger = a.objects.size() <= b.objects.size() ? b : a;
   if (smaller.objects.empty() || static_cast<int>(smaller.objects.size()) < config.min_objects) return 0.0;
-  if (config.frame == SceneFrame::kBase) return matchScore(pointsOf(smaller), pointsOf(larger), config);
-  std::vector<Point> turned = principalPointsOf(smaller);
-  const std::vector<Point> fixed = principalPointsOf(larger);
-  const double score = matchScore(turned, fixed, config);
+  const bool is_principal = config.frame == SceneFrame::kPrincipal;
+  std::vector<Point> turned = is_principal ? principalPointsOf(smaller) : pointsOf(smaller);
+  const std::vector<Point> fixed = is_principal ? principalPointsOf(larger) : pointsOf(larger);
+  const Match as_it_is = matchOf(turned, fixed, config);
   turn(M_PI, turned);
-  return std::max(score, matchScore(turned, fixed, config));
+  const Match turned_round = matchOf(turned, fixed, config);
+  return turned_round.similarity > as_it_is.similarity ? turned_round.score : as_it_is.score;
 }
 
 }  // namespace semantic_mht_slam

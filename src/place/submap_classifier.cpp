@@ -55,7 +55,7 @@ bool isUsable(const cv::ml::DTrees& tree) {
   if (tree.isClassifier() || tree.getVarCount() != kFeatures || tree.getRoots().size() != 1) return false;
   return nodes_end > 0 && std::all_of(nodes.begin(), nodes.end(), [&](const cv::ml::DTrees::Node& node) {
            if (!(node.value >= 0.0 && node.value <= 1.0)) return false;
-    if (node.split < 0) return true;
+           if (node.split < 0) return true;
            const auto parent = static_cast<int>(&node - nodes.data());
            const auto is_child = [&](int child) {
              return child > parent && child < nodes_end;

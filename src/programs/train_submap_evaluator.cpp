@@ -56,9 +56,9 @@ po::options_description makeOptions(Arguments& arguments) {
       "changes a parameter; may be given several times");
   add("recall", po::value(&arguments.recall)->value_name("SHARE"),
       "share of the revisits to keep in cross-validation; default: 0.99");
-  add("max-depth", po::value(&arguments.training.max_depth)->value_name("N"), "of the tree; default: 4");
+  add("max-depth", po::value(&arguments.training.max_depth)->value_name("N"), "of the tree; default: 3");
   add("min-samples", po::value(&arguments.training.min_samples)->value_name("N"),
-      "submaps that a node must hold to be split; default: 60");
+      "submaps that a node must hold to be split; default: 100");
   add("test", po::value(&arguments.test)->value_name("FILE"), "trains nothing, but scores this tree on the drives");
   add("output", po::value(&arguments.output)->value_name("FILE"), "YAML file of the tree");
   return options;

@@ -18,12 +18,12 @@ namespace semantic_mht_slam {
 
 /// Parameters of the paper's place recognition.
 struct PaperChainConfig {
-  int similar_submaps = 10;
+  int similar_submaps = 20;
   double max_divergence = 0.1;  ///< of submaps, nats
-  int scenes_per_submap = 3;
+  int scenes_per_submap = 5;
   double max_scene_distance = 0.35;  ///< of scene histograms
   double recent_m = 50.0;            ///< driven since: too young to be a revisit
-  double min_score = 1.3;            ///< of S_ncc + S_scene, in [-1, 2]
+  double min_score = 1.45;           ///< of S_ncc + S_scene, in [-1, 2]
   CovisibilityConfig covisibility;
   SceneScoreConfig scene;
   LoopFilterConfig filter;

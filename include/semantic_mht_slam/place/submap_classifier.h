@@ -17,8 +17,8 @@ struct LabelledSubmap {
 /// How a tree is grown. Few, large leaves: a search that is left out costs a loop closure, one that is in vain
 /// milliseconds.
 struct TreeTraining {
-  int max_depth = 4;
-  int min_samples = 60;  ///< a node with less is not split
+  int max_depth = 3;
+  int min_samples = 100;  ///< a node with less is not split
 };
 
 /// Decision tree that predicts from its features whether a submap is worth a search (paper, section III-A).
