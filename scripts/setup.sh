@@ -12,6 +12,7 @@ PACKAGES=(
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-msgs python3-visualization-msgs
   libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
   libpcl-dev
+  libflann-dev liblz4-dev libopencv-dev
   rviz libgl1-mesa-dri xvfb xauth imagemagick
   libgtest-dev libbenchmark-dev
 )

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/place/class_histogram.h"
+#include "semantic_mht_slam/place/covisibility.h"
+#include "semantic_mht_slam/place/histogram_index.h"
+#include "semantic_mht_slam/place/keyframe.h"
+#include "semantic_mht_slam/place/loop_filter.h"
+#include "semantic_mht_slam/place/scene_score.h"
+
+namespace semantic_mht_slam {
+
+/// Parameters of the paper's place recognition.
+struct PaperChainConfig {
+  int similar_submaps = 20;
+  double max_divergence = 0.1;  ///< of submaps, nats
+  int scenes_per_submap = 5;
+  double max_scene_distance = 0.35;  ///< of scene histograms
+  double recent_m = 50.0;            ///< driven since: too young to be a revisit
+  double min_score = 1.45;           ///< of S_ncc + S_scene, in [-1, 2]
+  CovisibilityConfig covisibility;
+  SceneScoreConfig scene;
+  LoopFilterConfig filter;
+};
+
+void describe(PaperChainConfig& config, Fields& fields);
+
+/// An earlier keyframe that may show the place of the query, with every score.
+struct PaperCandidate {
+  std::size_t frame = 0;  ///< of the earlier keyframe
+  int submap = 0;         ///< of the earlier keyframe
+  double histogram_divergence = -1.0;
+  double scene_distance = -1.0;  ///< Euclidean distance of the scene histograms
+  double topology_score = -2.0;  ///< S_ncc
+  double scene_score = -1.0;     ///< S_scene; -1: not computed, S_ncc was too low for any
+  double loop_prob = -1.0;       ///< of the loop filter, after this query
+  std::string reason;            ///< why it was refused; empty: proposed for geometric verification
+
+  double score() const { return topology_score + scene_score; }
+};
+
+/// Place recognition of paper section III-B up to the geometric verification: similar submaps by the divergence of
+/// their class histograms, in each of them the nearest scenes by the distance of theirs, both from kd-trees; the sum of
+/// the topology and the landmark score against a threshold; a Bayes filter over consecutive keyframes.
+class PaperChain {
+ public:
+  /// `classes` is the size of the class table. Throws std::invalid_argument as HistogramIndex does.
+  PaperChain(const PaperChainConfig& config, int classes);
+
+  /// Takes in a finished submap: the class histogram of its landmarks and its keyframes in the order of the drive.
+  void add(const ClassHistogram& submap_histogram, const std::vector<Keyframe>& keyframes);
+
+  /// Candidates for a keyframe whose submap has this histogram, best first, equally good ones by frame. Those driven
+  /// less than `recent_m` before it are no candidates; its own submap may have been added, so that the covisibility
+  /// graph knows its landmarks. Keyframes must be asked in the order of the drive, as the filter moves on with each.
+  std::vector<PaperCandidate> query(const Keyframe& keyframe, const ClassHistogram& submap_histogram);
+
+  /// Forgets the belief of the filter, as after a gap in the drive or for a submap that was not checked.
+  void resetFilter() { filter_.reset(); }
+
+ private:
+  struct Place {
+    std::size_t frame = 0;
+    int submap = 0;
+    double driven_m = 0.0;
+    Scene scene;
+    Eigen::MatrixXd laplacian;
+  };
+  struct PlacesOfSubmap {
+    double begin_m = 0.0;
+    std::vector<Place> places;
+    HistogramIndex scenes;
+  };
+
+  std::vector<PaperCandidate> scoreScenesOf(const PlacesOfSubmap& submap, double divergence, const Keyframe& keyframe,
+                                            const Eigen::MatrixXd& laplacian) const;
+  PaperCandidate scorePair(const Place& place, const Keyframe& keyframe, const Eigen::MatrixXd& laplacian) const;
+  Eigen::MatrixXd laplacianOf(const Scene& scene) const;
+
+  PaperChainConfig config_;
+  int classes_;
+  CovisibilityGraph graph_;
+  HistogramIndex submap_index_;
+  std::vector<PlacesOfSubmap> submaps_;
+  LoopFilter filter_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,155 @@
+#include "semantic_mht_slam/place/submap_classifier.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <opencv2/core.hpp>
+#include <opencv2/ml.hpp>
+
+#include "semantic_mht_slam/common/error.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr const char* kFormat = "semantic_mht_slam submap evaluator 1";
+constexpr int kFeatures = static_cast<int>(kSubmapFeatureNames.size());
+
+int ignoreError(int, const char*, const char*, const char*, int, void*) {
+  return 0;
+}
+
+// OpenCV prints every error before it throws it.
+class QuietOpenCv {
+ public:
+  QuietOpenCv() : previous_(cv::redirectError(ignoreError, nullptr, &previous_data_)) {}
+  ~QuietOpenCv() { cv::redirectError(previous_, previous_data_); }
+  QuietOpenCv(const QuietOpenCv&) = delete;
+  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
+
+ private:
+  void* previous_data_ = nullptr;
+  cv::ErrorCallback previous_;
+};
+
+void fillRow(const SubmapFeatures& features, float* row) {
+  const auto values = toArray(features);
+  std::transform(values.begin(), values.end(), row, [](double value) { return static_cast<float>(value); });
+}
+
+std::string contentOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  if (!file || !(content << file.rdbuf())) throw InputError(path + ": the submap evaluator's tree cannot be read");
+  return content.str();
+}
+
+// What a tree needs to be walked without leaving its tables: OpenCV itself does not check.
+bool isUsable(const cv::ml::DTrees& tree) {
+  const auto& nodes = tree.getNodes();
+  const auto& splits = tree.getSplits();
+  const auto nodes_end = static_cast<int>(nodes.size());
+  if (tree.isClassifier() || tree.getVarCount() != kFeatures || tree.getRoots().size() != 1) return false;
+  return nodes_end > 0 && std::all_of(nodes.begin(), nodes.end(), [&](const cv::ml::DTrees::Node& node) {
+           if (!(node.value >= 0.0 && node.value <= 1.0)) return false;
+           if (node.split < 0) return true;
+           const auto parent = static_cast<int>(&node - nodes.data());
+           const auto is_child = [&](int child) {
+             return child > parent && child < nodes_end;
+           };  // downwards: no circle
+           return node.split < static_cast<int>(splits.size()) && is_child(node.left) && is_child(node.right);
+         });
+}
+
+void requireFormat(const cv::FileStorage& storage, const std::string& path) {
+  const cv::FileNode format = storage["format"];
+  if (!format.isString() || format.string() != kFormat) {
+    throw InputError(path + ": not a tree of train_submap_evaluator (format '" + kFormat + "' was expected)");
+  }
+  std::vector<std::string> names;
+  storage["features"] >> names;
+  if (!std::equal(names.begin(), names.end(), kSubmapFeatureNames.begin(), kSubmapFeatureNames.end())) {
+    throw InputError(path + ": the features are not those of this version; train the tree again");
+  }
+}
+
+double minProbOf(const cv::FileStorage& storage, const std::string& path) {
+  const cv::FileNode node = storage["min_prob"];
+  const double min_prob = node.isReal() || node.isInt() ? static_cast<double>(node) : -1.0;
+  if (!(min_prob >= 0.0 && min_prob <= 1.0)) throw InputError(path + ": min_prob must be a number from 0 to 1");
+  return min_prob;
+}
+
+}  // namespace
+
+struct SubmapClassifier::Tree {
+  cv::Ptr<cv::ml::DTrees> model = cv::ml::DTrees::create();
+};
+
+SubmapClassifier::SubmapClassifier(std::unique_ptr<Tree> tree) : tree_(std::move(tree)) {}
+SubmapClassifier::~SubmapClassifier() = default;
+SubmapClassifier::SubmapClassifier(SubmapClassifier&&) noexcept = default;
+SubmapClassifier& SubmapClassifier::operator=(SubmapClassifier&&) noexcept = default;
+
+SubmapClassifier SubmapClassifier::train(const std::vector<LabelledSubmap>& samples, const TreeTraining& training) {
+  const auto good =
+      std::count_if(samples.begin(), samples.end(), [](const LabelledSubmap& sample) { return sample.is_good; });
+  if (good == 0 || good == static_cast<std::ptrdiff_t>(samples.size())) {
+    throw std::invalid_argument("a tree needs good and other submaps to learn from");
+  }
+  cv::Mat features(static_cast<int>(samples.size()), kFeatures, CV_32F);
+  cv::Mat labels(static_cast<int>(samples.size()), 1, CV_32F);
+  for (int i = 0; i < features.rows; ++i) {
+    fillRow(samples[i].features, features.ptr<float>(i));
+    labels.at<float>(i) = samples[i].is_good ? 1.0F : 0.0F;
+  }
+  auto tree = std::make_unique<Tree>();
+  tree->model->setMaxDepth(training.max_depth);
+  tree->model->setMinSampleCount(training.min_samples);
+  tree->model->setCVFolds(0);  // no pruning: OpenCV's would draw random folds of samples that are not independent
+  tree->model->setUseSurrogates(false);
+  tree->model->train(cv::ml::TrainData::create(features, cv::ml::ROW_SAMPLE, labels));
+  return SubmapClassifier(std::move(tree));
+}
+
+SubmapClassifier SubmapClassifier::load(const std::string& path) {
+  const std::string content = contentOf(path);
+  const QuietOpenCv quiet;
+  try {
+    const cv::FileStorage storage(content, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    if (!storage.isOpened()) throw InputError(path + ": not YAML as OpenCV writes it");
+    requireFormat(storage, path);
+    auto tree = std::make_unique<Tree>();
+    tree->model->read(storage["tree"]);
+    if (!isUsable(*tree->model)) throw InputError(path + ": the decision tree in it is damaged");
+    SubmapClassifier classifier(std::move(tree));
+    classifier.setMinProb(minProbOf(storage, path));
+    return classifier;
+  } catch (const cv::Exception& error) {
+    throw InputError(path + ": not a tree of train_submap_evaluator (" + error.err + ")");
+  }
+}
+
+double SubmapClassifier::goodProb(const SubmapFeatures& features) const {
+  cv::Mat row(1, kFeatures, CV_32F);
+  fillRow(features, row.ptr<float>());
+  return tree_->model->predict(row);
+}
+
+std::string SubmapClassifier::toYaml(const std::string& trained_on) const {
+  cv::FileStorage storage("tree.yaml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+  storage << "format" << kFormat << "trained_on" << trained_on << "features"
+          << "[";
+  for (const char* name : kSubmapFeatureNames) storage << name;
+  storage << "]"
+          << "min_prob" << min_prob_ << "tree"
+          << "{";
+  tree_->model->write(storage);
+  storage << "}";
+  return storage.releaseAndGetString();
+}
+
+}  // namespace semantic_mht_slam
