@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kFullSystem = "dpmhm";
 constexpr double kAllowedLoss = 0.02;
+constexpr double kMapMbPerKm = 1.0;
 constexpr std::size_t kNamedCases = 12;
 
 std::string nameOf(const BenchmarkRun& run) {
@@ -108,6 +109,20 @@ Statement noWrongClosure(const std::vector<BenchmarkRun>& runs) {
   return {false, all + ", " + formatFixed(wrong, 0) + " of them WRONG: " + firstOf(with_wrong)};
 }
 
+Statement smallMaps(const std::vector<BenchmarkRun>& runs) {
+  double largest = 0.0;
+  std::string where;
+  for (const BenchmarkRun& run : runs) {
+    const double size = figureOf(run.figures, "map_mb_per_km");
+    if (run.method != kFullSystem || !(size > largest)) continue;
+    largest = size;
+    where = nameOf(run) + " " + run.objects;
+  }
+  const bool holds = largest < kMapMbPerKm;
+  return {holds, std::string("the largest map of ") + kFullSystem + " takes " + formatFixed(largest, 2) +
+                     " MB per km of driving (" + where + ")" + (holds ? ", less than 1" : ", MORE than 1")};
+}
+
 bool anyRun(const std::vector<BenchmarkRun>& runs, const std::string& method) {
   return std::any_of(runs.begin(), runs.end(), [&](const BenchmarkRun& run) { return run.method == method; });
 }
@@ -122,7 +137,10 @@ std::vector<Statement> benchmarkStatements(const std::vector<BenchmarkRun>& runs
     const Comparison comparison = compare(groups, other.objects, other.method);
     if (!comparison.own_m.empty()) result.push_back(compared(comparison, other.objects, other.method));
   }
-  if (anyRun(runs, kFullSystem)) result.push_back(neverWorseThanOdometry(runs));
+  if (anyRun(runs, kFullSystem)) {
+    result.push_back(neverWorseThanOdometry(runs));
+    result.push_back(smallMaps(runs));
+  }
   result.push_back(noWrongClosure(runs));
   const auto failed =
       std::count_if(runs.begin(), runs.end(), [](const BenchmarkRun& run) { return !run.failure.empty(); });

@@ -118,7 +118,9 @@ int evaluateBenchmark(const std::vector<std::string>& arguments) {
   BenchmarkResult result;
   if (!parse(arguments, result.request)) return 0;
   result.cells = makeCells(result.request);
-  result.config = effectiveConfig(result.request, {});
+  std::vector<std::string> settings = result.request.settings;
+  settings.emplace_back("method=dpmhm");
+  result.config = effectiveConfig(result.request.config, settings);
   result.program = programHash();
   prepareOutputFolder(result.request.output);
   const RunCounts counts = runCells(result.request, result.cells);

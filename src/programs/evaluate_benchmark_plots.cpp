@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -21,7 +22,8 @@ constexpr const char* kFullSystem = "dpmhm";
 constexpr const char* kCheckedColor = "#e69f00";   // orange, as in the paper
 constexpr const char* kAcceptedColor = "#009e73";  // green, as in the paper
 constexpr const char* kRefusedColor = "#bbbbbb";
-constexpr const char* kReferenceColor = "#000000";
+constexpr std::array<const char*, 3> kReferenceColors = {"#000000", "#8c564b", "#7f7f00"};
+constexpr double kPercentStep = 0.001;  // smaller differences are noise of the last digits
 
 using Positions = std::vector<Eigen::Vector3d>;
 
@@ -65,6 +67,27 @@ PlotSeries overFrames(const std::string& label, const std::vector<double>& value
   return series;
 }
 
+void addMethod(const BenchmarkMethod& method, const BenchmarkCell& cell, Plot& plot) {
+  const SequenceTruth truth = readTruth(cell.dataset);
+  const FrameErrors errors = frameErrors(truth.T_world_cam0, readResult(cell));
+  plot.series.push_back(overFrames(method.name, errors.running_rmse_m, method.color, PlotSeries::Style::kLine));
+  if (method.name != kFullSystem) return;
+  const OnlineTrajectory online = readOnline(cell, truth);
+  if (online.frames.empty()) return;
+  PlotSeries series{method.name + " live", online.frames, {}, method.color, PlotSeries::Style::kDashed};
+  series.y = frameErrors(online.truth, online.estimate).running_rmse_m;
+  plot.series.push_back(std::move(series));
+}
+
+void addReferences(const std::vector<BenchmarkReference>& references, const std::string& sequence, Plot& plot) {
+  std::size_t color = 0;
+  for (const BenchmarkReference& reference : references) {
+    if (reference.sequence != sequence) continue;
+    plot.series.push_back(overFrames(reference.name, reference.running_rmse_m,
+                                     kReferenceColors[color++ % kReferenceColors.size()], PlotSeries::Style::kDashed));
+  }
+}
+
 Plot errorPlotOf(const BenchmarkResult& result, const std::vector<BenchmarkGroup>& part, const std::string& sequence) {
   Plot plot;
   plot.x_label = "frame";
@@ -73,16 +96,10 @@ Plot errorPlotOf(const BenchmarkResult& result, const std::vector<BenchmarkGroup
   for (const BenchmarkMethod& method : benchmarkMethods()) {
     const BenchmarkGroup* group = find(part, sequence, method.name);
     if (group == nullptr) continue;
-    const BenchmarkCell& cell = typicalCell(result, *group);
-    const FrameErrors errors = frameErrors(readTruth(cell.dataset).T_world_cam0, readResult(cell));
-    plot.title = "RMSE over the frames: " + caseName(cell.run);
-    plot.series.push_back(overFrames(method.name, errors.running_rmse_m, method.color, PlotSeries::Style::kLine));
+    plot.title = "RMSE over the frames: " + caseName(group->first);
+    addMethod(method, typicalCell(result, *group), plot);
   }
-  for (const BenchmarkReference& reference : result.references) {
-    if (reference.sequence != sequence || plot.series.empty()) continue;
-    plot.series.push_back(
-        overFrames(reference.name, reference.running_rmse_m, kReferenceColor, PlotSeries::Style::kDashed));
-  }
+  if (!plot.series.empty()) addReferences(result.references, sequence, plot);
   return plot;
 }
 
@@ -130,7 +147,8 @@ std::optional<Plot> ablationPlot(const std::vector<BenchmarkGroup>& part) {
     std::vector<double> known;
     for (const std::string& sequence : sequences) {
       const BenchmarkGroup* group = find(part, sequence, method.name);
-      series.values.push_back(group == nullptr ? kInterruption : medianOf(*group, "reduction_se3_percent"));
+      const double percent = group == nullptr ? kInterruption : medianOf(*group, "reduction_se3_percent");
+      series.values.push_back(kPercentStep * std::round(percent / kPercentStep));
       if (std::isfinite(series.values.back())) known.push_back(series.values.back());
     }
     series.values.push_back(mean(known));

@@ -150,12 +150,14 @@ std::string html(const BenchmarkResult& result, const std::vector<BenchmarkRun>&
       "deviation over the frames of the RMSE up to the frame, first poses made equal, no alignment, as in the paper's "
       "table. SE3-aligned RMSE: after a rigid least-squares alignment. t_rel: translation error over 100 to 800 m of "
       "driving. Real objects come from a detector on recorded scans; semi-real ones have real odometry, true poses and "
-      "pole positions and a simulated detector. Lines and maps show the seed next to the median.");
+      "pole positions and a simulated detector. Lines and maps show the seed next to the median; \"live\" is the "
+      "trajectory as it was known at each frame.");
   for (const BenchmarkMethod& method : benchmarkMethods()) page.paragraph(method.name + ": " + method.help);
   const std::vector<BenchmarkGroup> groups = groupRuns(runs);
   for (const BenchmarkPart& name : partsOf(groups)) addPart(result, groupsOf(groups, name), page);
   page.mark("measured begin");
   page.heading("Measured: times and memory");
+  page.paragraph("At most " + std::to_string(result.request.jobs) + " runs shared the machine.");
   page.tables(measuredTables(result));
   page.mark("measured end");
   return page.text();

@@ -81,7 +81,7 @@ class KeyMaker {
                                     cell.objects_file, odometryFile(cell.run.odometry)}) {
       key += name + " " + hashOf(cell.dataset + "/" + name) + "\n";
     }
-    return key + "classes " + hashOf(classTable()) + "\n" + effectiveConfig(request_, settings);
+    return key + "classes " + hashOf(classTable()) + "\n" + effectiveConfig(request_.config, settings);
   }
 
  private:
@@ -251,10 +251,10 @@ RunCounts runCells(const BenchmarkRequest& request, std::vector<BenchmarkCell>& 
   return counts;
 }
 
-std::string effectiveConfig(const BenchmarkRequest& request, const std::vector<std::string>& settings) {
+std::string effectiveConfig(const std::string& config, const std::vector<std::string>& settings) {
   std::vector<Setting> overrides;
   for (const std::string& text : settings) overrides.push_back(parseOverride(text));
-  return toYaml(loadSystemConfig(request.config, overrides));
+  return toYaml(loadSystemConfig(config, overrides));
 }
 
 std::string programHash() {

@@ -21,8 +21,8 @@ struct RunCounts {
 /// configuration that is refused, before anything runs.
 RunCounts runCells(const BenchmarkRequest& request, std::vector<BenchmarkCell>& cells);
 
-/// The parameters of a run with `settings` (KEY=VALUE) in addition to the request's, as YAML.
-std::string effectiveConfig(const BenchmarkRequest& request, const std::vector<std::string>& settings);
+/// The parameters of the file `config`, changed by `settings` (KEY=VALUE), as YAML. Throws InputError.
+std::string effectiveConfig(const std::string& config, const std::vector<std::string>& settings);
 
 /// Hash of the content of `slam_offline` and the libraries that shape what it computes: a name for the program that is
 /// true whatever the state of the source tree.

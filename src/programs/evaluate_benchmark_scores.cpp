@@ -54,20 +54,10 @@ double reductionPercent(double value, double raw) {
   return 100.0 * (1.0 - value / raw);
 }
 
-/// The trajectory as it was known live. Undefined figures where the run did not write one.
+/// Undefined figures where the run did not write its live estimate.
 TrajectoryError onlineError(const BenchmarkCell& cell, const SequenceTruth& truth) {
-  const std::string path = inFolder(cell.folder, "trajectory_online.tum");
-  if (!fs::exists(path) || fs::file_size(path) == 0) return {};
-  std::vector<PoseMatrix> true_poses;
-  std::vector<Pose> estimate;
-  for (const auto& [stamp, T_map_base] : readTumTrajectory(path)) {
-    const auto found = std::lower_bound(truth.stamps.begin(), truth.stamps.end(), stamp);
-    if (found == truth.stamps.end() || *found != stamp) continue;
-    true_poses.push_back(truth.T_world_cam0[static_cast<std::size_t>(found - truth.stamps.begin())]);
-    estimate.push_back(toCamera(T_map_base, truth.T_cam0_velodyne));
-  }
-  if (estimate.empty()) throw InputError(path + ": no stamp of times.txt in it");
-  return trajectoryError(true_poses, poseMatrices(estimate));
+  const OnlineTrajectory online = readOnline(cell, truth);
+  return online.frames.empty() ? TrajectoryError{} : trajectoryError(online.truth, online.estimate);
 }
 
 void addClosures(const BenchmarkCell& cell, const SequenceTruth& truth, Figures& figures) {
@@ -196,6 +186,24 @@ std::vector<PoseMatrix> readResult(const BenchmarkCell& cell) {
   const std::string times = inFolder(cell.dataset, "times.txt");
   requireSameLength(times, readTimes(times).size(), path, poses.size());
   return poses;
+}
+
+OnlineTrajectory readOnline(const BenchmarkCell& cell, const SequenceTruth& truth) {
+  const std::string path = inFolder(cell.folder, "trajectory_online.tum");
+  if (!fs::exists(path) || fs::file_size(path) == 0) return {};
+  OnlineTrajectory online;
+  std::vector<Pose> estimate;
+  for (const auto& [stamp, T_map_base] : readTumTrajectory(path)) {
+    const auto found = std::lower_bound(truth.stamps.begin(), truth.stamps.end(), stamp);
+    if (found == truth.stamps.end() || *found != stamp) continue;
+    const auto frame = static_cast<std::size_t>(found - truth.stamps.begin());
+    online.frames.push_back(static_cast<double>(frame));
+    online.truth.push_back(truth.T_world_cam0[frame]);
+    estimate.push_back(toCamera(T_map_base, truth.T_cam0_velodyne));
+  }
+  if (estimate.empty()) throw InputError(path + ": no stamp of times.txt in it");
+  online.estimate = poseMatrices(estimate);
+  return online;
 }
 
 std::vector<std::pair<std::string, std::vector<PoseMatrix>>> readReferences(const std::string& dataset,

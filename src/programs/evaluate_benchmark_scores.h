@@ -54,6 +54,16 @@ Histogram hypothesesOf(const BenchmarkCell& cell);
 /// Trajectory of camera 0 that a run ended with.
 std::vector<PoseMatrix> readResult(const BenchmarkCell& cell);
 
+/// The trajectory as it was known live, one list entry a sample whose stamp times.txt has.
+struct OnlineTrajectory {
+  std::vector<double> frames;
+  std::vector<PoseMatrix> truth;     ///< T_world_cam0
+  std::vector<PoseMatrix> estimate;  ///< T_world_cam0
+};
+
+/// trajectory_online.tum of a run; empty if it wrote none. Throws InputError.
+OnlineTrajectory readOnline(const BenchmarkCell& cell, const SequenceTruth& truth);
+
 /// A system to compare with: its name and its trajectory of camera 0, from the folder `reference` of the sequence.
 std::vector<std::pair<std::string, std::vector<PoseMatrix>>> readReferences(const std::string& dataset,
                                                                             const SequenceTruth& truth);

@@ -70,9 +70,10 @@ struct Statement {
 };
 
 /// Whether `dpmhm` is better than each other method in the mean over sequences and odometries (SE3-aligned RMSE, median
-/// of the seeds), whether it is ever worse than its odometry by more than 2 %, whether a loop closure was wrong and
-/// whether a run failed. Statements about methods that were not run are left out. Expects the figures `se3_m`,
-/// `running_mean_m`, `raw_se3_m` and `closures_wrong`.
+/// of the seeds), whether it is ever worse than its odometry by more than 2 %, how large its maps are,
+/// whether a loop closure was wrong and whether a run failed. Statements about methods that were not run are left out.
+/// Expects the figures `se3_m`, `running_mean_m`, `raw_se3_m`, `map_mb_per_km`, `closures_accepted` and
+/// `closures_wrong`.
 std::vector<Statement> benchmarkStatements(const std::vector<BenchmarkRun>& runs);
 
 }  // namespace semantic_mht_slam
