@@ -59,9 +59,10 @@ Statement compared(const Comparison& comparison, const std::string& objects, con
   Statement statement{own_m < other_m, ""};
   statement.text = std::string("objects ") + objects + ": " + kFullSystem + " is " +
                    (statement.holds ? "better than " : "NOT better than ") + method + " in the mean of " +
-                   std::to_string(comparison.own_m.size()) + " cases: SE3-aligned RMSE " + metres(own_m) + " against " +
-                   metres(other_m) + " (running mean " + metres(mean(comparison.own_running_m)) + " against " +
-                   metres(mean(comparison.other_running_m)) + ")";
+                   std::to_string(comparison.own_m.size()) + " sequences and odometries: SE3-aligned RMSE " +
+                   metres(own_m) + " against " + metres(other_m) + " (running mean " +
+                   metres(mean(comparison.own_running_m)) + " against " + metres(mean(comparison.other_running_m)) +
+                   ")";
   const std::size_t better = comparison.own_m.size() - comparison.not_better.size();
   statement.text += "; better in " + std::to_string(better) + " of them";
   if (!comparison.not_better.empty()) statement.text += ", not in " + firstOf(comparison.not_better);
