@@ -22,17 +22,16 @@ constexpr const char* kUsage =
     "  loops         loop closures, or scores of pairs of frames, against true poses\n"
     "  landmarks     mapped landmarks against true ones\n"
     "  alignment     frames against an earlier map after drift, for growing offsets\n"
+    "  benchmark     runs of every method on sequences, odometries and seeds, and a report on them\n"
     "\n"
     "evaluate COMMAND --help tells the options of a command.\n";
 
 using Command = std::pair<std::string, int (*)(const std::vector<std::string>&)>;
 
 const std::vector<Command>& commands() {
-  static const std::vector<Command> list = {{"trajectory", evaluateTrajectory},
-                                            {"association", evaluateAssociation},
-                                            {"loops", evaluateLoops},
-                                            {"landmarks", evaluateLandmarks},
-                                            {"alignment", evaluateAlignment}};
+  static const std::vector<Command> list = {{"trajectory", evaluateTrajectory}, {"association", evaluateAssociation},
+                                            {"loops", evaluateLoops},           {"landmarks", evaluateLandmarks},
+                                            {"alignment", evaluateAlignment},   {"benchmark", evaluateBenchmark}};
   return list;
 }
 

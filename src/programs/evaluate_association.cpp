@@ -2,10 +2,10 @@
 #include <vector>
 
 #include "semantic_mht_slam/evaluation/association_score.h"
-#include "semantic_mht_slam/io/csv_file.h"
 
 #include "evaluate_commands.h"
 #include "evaluate_files.h"
+#include "evaluate_rows.h"
 #include "program.h"
 
 namespace semantic_mht_slam {
@@ -19,22 +19,6 @@ constexpr const char* kUsage =
     "\n"
     "usage: evaluate association --truth objects_landmark.csv --associations associations.csv [--json] [--output "
     "DIR]\n";
-
-std::vector<TrueDetection> readTruth(const std::string& path) {
-  std::vector<TrueDetection> truth;
-  CsvReader({"frame", "landmark"}).read(path, [&](const CsvRow& row) {
-    truth.push_back({row.integer(0), row.integer(1)});
-  });
-  return truth;
-}
-
-std::vector<AssociatedDetection> readAssociations(const std::string& path) {
-  std::vector<AssociatedDetection> associations;
-  CsvReader({"frame", "row", "landmark"}).read(path, [&](const CsvRow& row) {
-    associations.push_back({row.integer(0), row.integer(1), row.integer(2)});
-  });
-  return associations;
-}
 
 nlohmann::json toJson(const PairwiseScore& score) {
   return {{"precision", score.precision}, {"recall", score.recall}, {"f1", score.f1}};
@@ -77,7 +61,7 @@ int evaluateAssociation(const std::vector<std::string>& arguments) {
                                                                            "folder for association.json");
   if (!parseOrHelp(arguments, kUsage, options)) return 0;
 
-  const std::vector<TrueDetection> truth = readTruth(truth_path);
+  const std::vector<TrueDetection> truth = readTrueDetections(truth_path);
   const std::vector<AssociatedDetection> associations = readAssociations(associations_path);
   AssociationScore score;
   withFileName(associations_path, [&] { score = associationScore(truth, associations); });

@@ -11,5 +11,6 @@ int evaluateAssociation(const std::vector<std::string>& arguments);
 int evaluateLoops(const std::vector<std::string>& arguments);
 int evaluateLandmarks(const std::vector<std::string>& arguments);
 int evaluateAlignment(const std::vector<std::string>& arguments);
+int evaluateBenchmark(const std::vector<std::string>& arguments);
 
 }  // namespace semantic_mht_slam

@@ -1,4 +1,3 @@
-#include <cctype>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 
 #include "evaluate_commands.h"
 #include "evaluate_files.h"
+#include "evaluate_rows.h"
 #include "program.h"
 
 namespace semantic_mht_slam {
@@ -37,26 +37,6 @@ struct Options {
   std::string folder;
   bool as_json = false;
 };
-
-bool readFlag(const CsvRow& row, std::size_t column) {
-  std::string word(row.text(column));
-  for (char& letter : word) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  if (word == "1" || word == "true") return true;
-  if (word != "0" && word != "false") row.fail(column, "'" + word + "' is none of 0, 1, false, true");
-  return false;
-}
-
-std::vector<ClosureEstimate> readClosures(const std::string& path) {
-  const CsvReader reader({"query_frame", "match_frame", "accepted", "tx", "ty", "tz"},
-                         {"score", "inliers", "qx", "qy", "qz", "qw"});
-  std::vector<ClosureEstimate> closures;
-  reader.read(path, [&](const CsvRow& row) {
-    ClosureEstimate closure{row.integer(0), row.integer(1), readFlag(row, 2), Eigen::Vector3d::Zero()};
-    if (closure.accepted) closure.query_in_match_m = {row.number(3), row.number(4), row.number(5)};
-    closures.push_back(closure);
-  });
-  return closures;
-}
 
 std::vector<PairEstimate> readPairs(const std::string& path) {
   std::vector<PairEstimate> pairs;

@@ -1,13 +1,19 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace semantic_mht_slam {
 
 /// One set of points of a plot. Points that are not finite are left out and interrupt the line.
 struct PlotSeries {
-  enum class Style { kLine, kDashed, kDots };
+  enum class Style {
+    kLine,
+    kDashed,
+    kDots,
+    kFilled  ///< closed shapes, one from each uninterrupted stretch of points
+  };
 
   std::string label;  ///< for the legend; empty: not in the legend
   std::vector<double> x;
@@ -21,8 +27,9 @@ struct Plot {
   std::string title;
   std::string x_label;  ///< with unit, as "x [m]"
   std::string y_label;
-  bool equal_aspect = false;  ///< a unit is as long on one axis as on the other
-  bool y_from_zero = false;   ///< the y axis includes 0
+  bool equal_aspect = false;                            ///< a unit is as long on one axis as on the other
+  bool y_from_zero = false;                             ///< the y axis includes 0
+  std::vector<std::pair<double, std::string>> x_names;  ///< what stands at the x axis in place of numbers
   std::vector<PlotSeries> series;
 };
 
