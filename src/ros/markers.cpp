@@ -100,7 +100,7 @@ class LandmarkDrawing {
 
   static Eigen::Vector3d positionOf(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
 
-  static constexpr double kSmallest_m = 0.6;  // smaller ones could not be seen or clicked
+  static constexpr double kSmallest_m = 1.0;  // smaller ones could not be seen or clicked
 
   const ClassTable& classes_;
   const LiveConfig& live_;

@@ -122,7 +122,10 @@ std::optional<Stamp> SlamNode::latestStamp() const {
 
 bool SlamNode::isExpectedFrame(const nav_msgs::Odometry& message) {
   const NodeConfig& node = config_.node;
-  if (message.header.frame_id == node.odom_frame && message.child_frame_id == node.base_frame) return true;
+  if (withoutSlash(message.header.frame_id) == node.odom_frame &&
+      withoutSlash(message.child_frame_id) == node.base_frame) {
+    return true;
+  }
   ++estimator_.odometry_wrong_frames;
   estimator_.wrong_frames = "'" + message.header.frame_id + "' to '" + message.child_frame_id + "'";
   warnings_.warn(odometry_subscriber_.getTopic() + ": odometry from " + estimator_.wrong_frames +

@@ -67,6 +67,7 @@ void SlamPublisher::startAgain() {
   map_publisher_.publish(map_);
   publishLandmarkMarkers({});
   publishTrajectory({});
+  hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, 0, {}));
 }
 
 }  // namespace semantic_mht_slam

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kRefresh_ms = 200;
 constexpr double kClickLimit_m = 10.0;
-constexpr double kResetQuestion_s = 3.0;
+constexpr double kResetQuestion_s = 5.0;
 
 QLabel* makeText(const QString& text) {
   auto* label = new QLabel(text);
@@ -42,6 +42,10 @@ HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   landmark_ = makeText("Click a landmark with the tool Publish Point to see its history and alternatives.");
   status_ = makeText("");
   status_->setFrameStyle(QFrame::StyledPanel);
+  status_->setMinimumHeight(3 * status_->fontMetrics().height());  // so that no answer moves the buttons
+  counters_->setObjectName("counters");
+  landmark_->setObjectName("landmark");
+  status_->setObjectName("status");
   layout->addWidget(counters_);
   layout->addWidget(fault_label_);
   layout->addWidget(makeTable(), 1);
@@ -55,6 +59,8 @@ QWidget* HypothesisPanel::makeTable() {
   table_ = new QTableWidget(0, 5);
   table_->setHorizontalHeaderLabels({"weight", "id", "parent", "age", "landmarks"});
   table_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+  table_->horizontalHeader()->setSectionResizeMode(4, QHeaderView::ResizeToContents);
+  table_->verticalHeader()->setDefaultSectionSize(table_->fontMetrics().height() + 6);
   table_->verticalHeader()->hide();
   table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
   table_->setMinimumHeight(90);
@@ -63,6 +69,7 @@ QWidget* HypothesisPanel::makeTable() {
 
 QPushButton* HypothesisPanel::makeButton(const QString& name, const QString& tip) {
   auto* button = new QPushButton(name);
+  button->setObjectName(name);
   button->setToolTip(tip);
   return button;
 }

@@ -16,7 +16,7 @@ class Feeder {
  public:
   struct Habits {
     double objects_offset_s = 0.0;
-    int class_id = 0;
+    int class_id = RunningNode::kPole;
     std::string objects_frame = "base_link";
     bool sends_objects = true;
   };

@@ -1,7 +1,11 @@
+#include <algorithm>
+#include <atomic>
+
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
-#include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SetMode.h>
@@ -73,10 +77,18 @@ TEST(NodeFaultsTest, WrongFramesAndUnmappedClassesAreNamedInDiagnostics) {
   EXPECT_TRUE(node.comesToReport("odometry", "'camera_init' to 'base_link', expected is 'odom' to 'base_link'"));
   EXPECT_TRUE(node.comesToReport("objects", "class id 99 on /wrong/objects not in the class table"));
   EXPECT_EQ(node.value("objects", "objects of unknown class id 99"), "180");
-  node.sendObjects(6.0, 0, 1, "nowhere");
+  node.sendObjects(6.0, RunningNode::kPole, 1, "nowhere");
   ros::WallDuration(0.5).sleep();
   node.sendOdometry(6.1);
   EXPECT_TRUE(node.comesToReport("objects", "no transform from 'nowhere' to 'base_link'"));
+}
+
+TEST(NodeFaultsTest, SlashBeforeAFrameIsNoFault) {
+  RunningNode node("slash");
+  ASSERT_TRUE(node.isReady());
+  node.sendOdometry(0.0, "/odom");
+  node.sendObjects(0.0, RunningNode::kPole, 1, "/base_link");
+  EXPECT_TRUE(node.comesToSay("objects", "frames used", "1"));
 }
 
 TEST(NodeFaultsTest, ClockThatFallsBackBeginsANewMap) {
@@ -98,7 +110,7 @@ TEST(NodeFaultsTest, InterruptEndsTheNodeWithinTwoSecondsUnderLoad) {
   ASSERT_TRUE(node.isReady());
   for (int i = 0; i < 2000; ++i) {
     node.sendOdometry(0.1 * i);
-    node.sendObjects(0.1 * i, 0, 30);
+    node.sendObjects(0.1 * i, RunningNode::kPole, 30);
   }
   const double seconds = node.process().stop(SIGINT, 10.0);
   EXPECT_GE(seconds, 0.0);
@@ -141,6 +153,40 @@ TEST(NodeServicesTest, FinishSubmapAndResetAnswerAndDoWhatTheySay) {
   EXPECT_TRUE(node.comesToSay("odometry", "used", "0"));
   node.sendOdometry(0.0);
   EXPECT_TRUE(node.comesToSay("odometry", "used", "1")) << "after a reset older stamps are welcome";
+}
+
+TEST(NodeServicesTest, LiveParametersChangeTheMarkersAtOnceAndWrongOnesStayAsTheyWere) {
+  RunningNode node("live", {"_node/live/correction:=limited"});
+  std::atomic<std::size_t> labels{0};
+  const auto subscriber = node.handle().subscribe<visualization_msgs::MarkerArray>(
+      "markers/landmarks", 10,
+      boost::function<void(const visualization_msgs::MarkerArrayConstPtr&)>(
+          [&](const visualization_msgs::MarkerArrayConstPtr& message) {
+            labels = static_cast<std::size_t>(std::count_if(message->markers.begin(), message->markers.end(),
+                                                            [](const auto& marker) { return marker.ns == "labels"; }));
+          }));
+  ASSERT_TRUE(node.isReady());
+  for (int i = 0; i < 30; ++i) {
+    node.sendOdometry(0.0001 * i);
+    node.sendObjects(0.0001 * i);
+    ros::WallDuration(0.002).sleep();
+  }
+  ASSERT_TRUE(node.comesToSay("objects", "frames used", "30"));
+  ASSERT_TRUE(call<std_srvs::Trigger>(node, "finish_submap").success);
+  ASSERT_TRUE(node.comesToSay("estimator", "landmarks", "3"));
+  EXPECT_EQ(labels, 0U);
+
+  dynamic_reconfigure::Reconfigure change;
+  change.request.config.bools.resize(1);
+  change.request.config.bools[0].name = "landmark_labels";
+  change.request.config.bools[0].value = 1;
+  change.request.config.strs.resize(1);
+  change.request.config.strs[0].name = "correction";
+  change.request.config.strs[0].value = "sometimes";
+  ASSERT_TRUE(ros::service::call(node.fullName() + "/node/live/set_parameters", change));
+  EXPECT_TRUE(waitFor([&] { return labels == 3U; }));
+  ASSERT_EQ(change.response.config.strs.size(), 1U);
+  EXPECT_EQ(change.response.config.strs[0].value, "limited") << "there is no policy 'sometimes'";
 }
 
 TEST(NodeServicesTest, SetModeRefusesWhatThereIsNot) {

@@ -63,7 +63,7 @@ class RunningNode {
   }
 
   /// Objects of one class around the base, in the base frame if not told otherwise.
-  void sendObjects(double time_s, int class_id = 0, std::size_t count = 3, const std::string& frame = "base_link") {
+  void sendObjects(double time_s, int class_id = kPole, std::size_t count = 3, const std::string& frame = "base_link") {
     SemanticObjectArray message;
     message.header.stamp = toRosTime(stampFromSeconds(kBegin_s + time_s));
     message.header.frame_id = frame;
@@ -102,6 +102,7 @@ class RunningNode {
   }
 
   static constexpr double kBegin_s = 1000.0;
+  static constexpr int kPole = 80;  ///< in the SemanticKITTI table
 
  private:
   void note(const diagnostic_msgs::DiagnosticArray& message) {

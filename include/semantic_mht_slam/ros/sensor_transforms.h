@@ -11,13 +11,16 @@
 
 namespace semantic_mht_slam {
 
+/// A frame name as tf2 takes it: older packages write a slash before it.
+std::string withoutSlash(const std::string& frame);
+
 /// Where the sensors are on the robot. They are fixed to it, so one look-up is enough.
 class SensorTransforms {
  public:
   explicit SensorTransforms(const std::string& base_frame) : base_frame_(base_frame), listener_(transforms_) {}
 
   /// T_base_sensor; empty while tf does not connect the two.
-  std::optional<Pose> find(const std::string& sensor_frame);
+  std::optional<Pose> find(const std::string& frame);
 
  private:
   const std::string base_frame_;
