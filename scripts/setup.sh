@@ -13,7 +13,10 @@ PACKAGES=(
   libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
   libpcl-dev
   libflann-dev liblz4-dev libopencv-dev
-  rviz libgl1-mesa-dri xvfb xauth imagemagick
+  libdiagnostic-msgs-dev libdiagnostic-updater-dev python3-diagnostic-msgs libstd-srvs-dev libroslib-dev
+  libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure
+  libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev
+  rviz librviz-dev qtbase5-dev libgl1-mesa-dri xvfb xauth xdotool imagemagick
   libgtest-dev libbenchmark-dev
 )
 

@@ -16,7 +16,7 @@ LAYERS = [
     ["evaluation"],
     ["app"],
     ["ros"],
-    ["programs"],
+    ["programs", "nodelets", "rviz_plugins"],
 ]
 LEVEL = {module: level for level, modules in enumerate(LAYERS) for module in modules}
 
@@ -25,7 +25,8 @@ LIBRARIES = {
     "ROS": (r"(ros|rosbag|roslib|rosconsole|console_bridge|tf|tf2|tf2_\w+|nodelet|pluginlib|class_loader|actionlib|rviz"
             r"|diagnostic_updater|message_filters|image_transport|dynamic_reconfigure|XmlRpc\w*|\w+_msgs|std_srvs|pcl_ros"
             r"|pcl_conversions|cv_bridge)[/.]|semantic_mht_slam/[A-Z]",
-            {"ros", "perception", "programs"}, {"ros", "perception"}),
+            {"ros", "perception", "programs", "nodelets", "rviz_plugins"}, {"ros", "perception"}),
+    "Qt and rviz": (r"(Q[A-Z]\w+|Qt\w+/.*|rviz/.*)$", {"rviz_plugins"}, set()),
     "Ceres": (r"(ceres|glog)/", {"graph"}, set()),
     "FLANN": (r"flann/", {"place"}, set()),
     "OpenCV machine learning": (r"opencv2/ml", {"place"}, set()),

@@ -37,6 +37,7 @@ void describe(NodeConfig& config, Fields& fields) {
              "Wall time between publications of the trajectory.");
   fields.add("reset_after_jump_back", config.reset_after_jump_back_s, "s", {0.0, 3600.0},
              "Odometry whose stamp falls back by more than this starts a new map.");
+  fields.group("live", config.live);
 }
 
 void describe(SystemConfig& config, Fields& fields) {

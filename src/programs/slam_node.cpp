@@ -6,9 +6,6 @@
 
 #include <ros/ros.h>
 
-#include "semantic_mht_slam/app/system_config.h"
-#include "semantic_mht_slam/ros/parameters.h"
-
 #include "program.h"
 
 namespace {
@@ -28,10 +25,7 @@ int run(int argc, char** argv) {
   }
   ros::init(argc, argv, "slam_node");
   const ros::NodeHandle private_handle("~");  // the last handle that goes shuts logging down
-  const SystemConfig config = makeSystemConfig(readParameters(private_handle));
-  requireUsableFrames(config.node);
-  const ClassTable classes = loadClassTable(config, "");
-  const SlamNode node(ros::NodeHandle(), config, classes);
+  const auto node = makeSlamNode(ros::NodeHandle(), private_handle, "");
   ros::spin();
   return 0;
 }

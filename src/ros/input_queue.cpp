@@ -34,6 +34,11 @@ void InputQueue::close() {
   changed_.notify_all();
 }
 
+std::size_t InputQueue::length() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return messages_.size();
+}
+
 std::size_t InputQueue::dropped() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return dropped_;

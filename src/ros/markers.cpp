@@ -1,5 +1,8 @@
 #include "semantic_mht_slam/ros/markers.h"
 
+#include <Eigen/Eigenvalues>
+
+#include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
@@ -20,6 +23,96 @@ Eigen::Vector3d displaySize(const Detection& detection, const ClassInfo& info) {
   if (detection.size_m) return detection.size_m->cwiseMax(0.1);
   return info.transition == Transition::kDirac ? Eigen::Vector3d(1.0, 1.0, 4.0) : Eigen::Vector3d(2.5, 2.5, 2.0);
 }
+
+visualization_msgs::Marker clearingMarker(const std_msgs::Header& header) {
+  visualization_msgs::Marker marker;
+  marker.header = header;
+  marker.action = visualization_msgs::Marker::DELETEALL;
+  return marker;
+}
+
+/// Adds the markers of one landmark after another.
+class LandmarkDrawing {
+ public:
+  LandmarkDrawing(const SemanticMap& map, const ClassTable& classes, const LiveConfig& live)
+      : classes_(classes), live_(live) {
+    marker_.header = map.header;
+    marker_.pose.orientation.w = 1.0;
+    array_.markers.push_back(clearingMarker(map.header));
+  }
+
+  void add(const Landmark& landmark) {
+    const std::optional<ClassIndex> index = classes_.findId(landmark.class_id);
+    if (!index) return;
+    const ClassInfo& info = classes_[*index];
+    for (const GaussianComponent& component : landmark.components) addEllipsoid(component, info);
+    if (landmark.undecided) addAlternatives(landmark);
+    if (live_.landmark_labels) addLabel(landmark, info);
+  }
+
+  visualization_msgs::MarkerArray take() { return std::move(array_); }
+
+ private:
+  visualization_msgs::Marker& push(const std::string& name, int type) {
+    array_.markers.push_back(marker_);
+    array_.markers.back().ns = name;
+    array_.markers.back().id = static_cast<int>(array_.markers.size());
+    array_.markers.back().type = type;
+    return array_.markers.back();
+  }
+
+  void addEllipsoid(const GaussianComponent& component, const ClassInfo& info) {
+    const Eigen::Matrix3d cov = Eigen::Map<const Eigen::Matrix3d>(component.covariance.data());
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(cov);
+    Eigen::Matrix3d rotation = axes.eigenvectors();
+    if (rotation.determinant() < 0.0) rotation.col(0) *= -1.0;
+    const Eigen::Vector3d size =
+        (2.0 * live_.landmark_sigmas * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt()).cwiseMax(kSmallest_m);
+    visualization_msgs::Marker& marker = push(info.name, visualization_msgs::Marker::SPHERE);
+    marker.pose = toMessage(Pose{Eigen::Quaterniond(rotation), positionOf(component.mean)});
+    marker.scale.x = size.x();
+    marker.scale.y = size.y();
+    marker.scale.z = size.z();
+    marker.color = toColor(info);
+    marker.color.a = static_cast<float>(0.2 + 0.7 * component.weight);
+  }
+
+  void addAlternatives(const Landmark& landmark) {
+    visualization_msgs::Marker& marker = push("undecided", visualization_msgs::Marker::LINE_LIST);
+    marker.scale.x = 0.3;
+    marker.color = undecided_color_;
+    for (const GaussianComponent& component : landmark.components) {
+      marker.points.push_back(landmark.position);
+      marker.points.push_back(component.mean);
+    }
+  }
+
+  void addLabel(const Landmark& landmark, const ClassInfo& info) {
+    visualization_msgs::Marker& marker = push("labels", visualization_msgs::Marker::TEXT_VIEW_FACING);
+    marker.pose.position = landmark.position;
+    marker.pose.position.z += 2.5;
+    marker.scale.z = 1.8;
+    marker.color = undecided_color_;
+    if (!landmark.undecided) marker.color = toColor(info);
+    marker.text = info.name + " " + std::to_string(landmark.id);
+    if (landmark.undecided) marker.text += "? " + formatFixed(100.0 * landmark.components.front().weight, 0) + " %";
+  }
+
+  static Eigen::Vector3d positionOf(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
+
+  static constexpr double kSmallest_m = 1.0;  // smaller ones could not be seen or clicked
+
+  const ClassTable& classes_;
+  const LiveConfig& live_;
+  visualization_msgs::Marker marker_;
+  visualization_msgs::MarkerArray array_;
+  const std_msgs::ColorRGBA undecided_color_ = [] {
+    std_msgs::ColorRGBA color;
+    color.r = color.g = color.a = 1.0F;
+    color.b = 0.2F;
+    return color;
+  }();
+};
 
 }  // namespace
 
@@ -47,6 +140,15 @@ visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& 
     array.markers.push_back(marker);
   }
   return array;
+}
+
+visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes,
+                                                  const LiveConfig& live) {
+  LandmarkDrawing drawing(map, classes, live);
+  for (const Landmark& landmark : map.landmarks) {
+    if (landmark.existence_prob >= live.landmark_min_existence_prob) drawing.add(landmark);
+  }
+  return drawing.take();
 }
 
 }  // namespace semantic_mht_slam

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "semantic_mht_slam/app/live_config.h"
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/slam/slam.h"
 
@@ -18,6 +19,7 @@ struct NodeConfig {
   double tf_timeout_s = 2.0;
   double trajectory_period_s = 0.5;
   double reset_after_jump_back_s = 1.0;
+  LiveConfig live;
 };
 
 void describe(NodeConfig& config, Fields& fields);

@@ -29,6 +29,9 @@ class InputQueue {
   /// Wakes the worker for good. Messages that still wait are given up.
   void close();
 
+  /// Messages that wait now.
+  std::size_t length() const;
+
   std::size_t dropped() const;
 
  private:

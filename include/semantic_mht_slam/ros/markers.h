@@ -4,6 +4,9 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include <semantic_mht_slam/SemanticMap.h>
+
+#include "semantic_mht_slam/app/live_config.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/slam/frame.h"
 
@@ -13,5 +16,11 @@ namespace semantic_mht_slam {
 /// by class. One marker namespace a class; the first marker clears what was shown before.
 visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& T_map_odom, const ClassTable& classes,
                                                 const std::string& map_frame);
+
+/// The landmarks of a map: an ellipsoid in the class colour for each component of the mixture, as opaque as its weight
+/// is high; yellow lines from the mean of an undecided landmark to its components; labels if `live` asks for them. One
+/// namespace a class, and `undecided` and `labels`; the first marker clears what was shown before.
+visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes,
+                                                  const LiveConfig& live);
 
 }  // namespace semantic_mht_slam

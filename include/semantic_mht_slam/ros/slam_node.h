@@ -1,7 +1,6 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -9,24 +8,31 @@
 #include <thread>
 
 #include <ros/ros.h>
-#include <tf2_ros/buffer.h>
-#include <tf2_ros/transform_broadcaster.h>
-#include <tf2_ros/transform_listener.h>
+#include <std_srvs/Trigger.h>
+
+#include <semantic_mht_slam/SetMode.h>
 
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/ros/input_queue.h"
+#include "semantic_mht_slam/ros/input_warnings.h"
+#include "semantic_mht_slam/ros/live_parameters.h"
+#include "semantic_mht_slam/ros/node_diagnostics.h"
+#include "semantic_mht_slam/ros/sensor_transforms.h"
+#include "semantic_mht_slam/ros/slam_publisher.h"
 #include "semantic_mht_slam/ros/time_jump_guard.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 namespace semantic_mht_slam {
 
-/// The ROS node. Subscribers put messages into a bounded queue; one worker thread owns the estimator, takes them out,
-/// and publishes tf map -> odom, `pose`, `markers/objects`, `hypotheses` and `map`; a wall timer publishes `trajectory`
-/// (latched) when it has changed, so that the last one goes out even if the clock of a replay has stopped.
+/// The ROS node, in a process of its own or in that of a nodelet manager. Subscribers put messages into a bounded
+/// queue; one worker thread owns the estimator, takes them out and publishes; a wall timer publishes `trajectory` when
+/// it has changed, so that the last one goes out even if the clock of a replay has stopped. Services change the
+/// estimator between two messages.
 class SlamNode {
  public:
-  SlamNode(const ros::NodeHandle& handle, const SystemConfig& config, const ClassTable& classes);
+  SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle, const SystemConfig& config,
+           const ClassTable& classes);
 
   /// Stops the worker; messages that still wait are given up.
   ~SlamNode();
@@ -41,52 +47,74 @@ class SlamNode {
     ros::WallTime deadline;
   };
 
+  void receive(const nav_msgs::OdometryConstPtr& message);
+  void receive(const SemanticObjectArrayConstPtr& message);
+  void subscribe();
+  void advertiseServices();
+
+  // The worker.
   void work();
   void handle(const nav_msgs::Odometry& message);
   void handle(const SemanticObjectArray& message);
-  bool isExpectedFrame(const nav_msgs::Odometry& message);
-  void warn(const std::string& text);
   void process(const nav_msgs::Odometry& message);
+  bool isExpectedFrame(const nav_msgs::Odometry& message);
   std::optional<Stamp> latestStamp() const;
-  void startAgain(Stamp stamp);
   void retryObjects();
-  void publishPose();
-  void publishObjects();
-  void publishTrajectory(const ros::WallTimerEvent& event);
-  void reportProblems();
-  std::optional<Pose> findSensor(const std::string& sensor_frame);
+  void add(const SemanticObjectArray& message, const Pose& T_base_sensor);
+  void noteStatus();
+
+  // With the estimator locked.
+  void startAgain();
+
+  // Services, timers and diagnostics, in a spinner thread.
+  bool finishSubmap(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool setMode(SetMode::Request& request, SetMode::Response& response);
+  void publishSlowTopics(const ros::WallTimerEvent& event);
+  NodeStatus status();
+  ClockStatus clockStatus();
 
   ros::NodeHandle handle_;
   const SystemConfig config_;
   const ClassTable classes_;
-  tf2_ros::Buffer transforms_;
-  tf2_ros::TransformListener transform_listener_;
-  tf2_ros::TransformBroadcaster transform_broadcaster_;
-  ros::Publisher pose_publisher_;
-  ros::Publisher trajectory_publisher_;
-  ros::Publisher objects_publisher_;
-  ros::Publisher hypotheses_publisher_;
-  ros::Publisher map_publisher_;
+  LiveParameters live_;
+  SensorTransforms sensors_;
 
-  // Owned by the worker, but for the trajectory that the timer publishes.
-  std::unique_ptr<Slam> slam_;
-  TimeJumpGuard jump_;
-  std::map<std::string, Pose> T_base_sensor_;
-  std::deque<WaitingObjects> waiting_objects_;
-  std::size_t without_transform_ = 0;
-  std::string unconnected_frame_;
-  std::map<std::string, ros::WallTime> last_warning_;  ///< by the text without its numbers
-  std::size_t unknown_classes_ = 0;
+  // Guarded by `slam_mutex_`.
   std::mutex slam_mutex_;
+  std::unique_ptr<Slam> slam_;
+  SlamPublisher publisher_;
+  TimeJumpGuard jump_;
+  std::deque<WaitingObjects> waiting_objects_;
+  EstimatorStatus estimator_;
+
+  // Guarded by `status_mutex_`, which is never held for long: diagnostics go out however busy the estimator is.
+  std::mutex status_mutex_;
+  EstimatorStatus noted_estimator_;
+  FrameTimer frame_timer_;
+  TopicMonitor odometry_monitor_;
+  TopicMonitor objects_monitor_;
+
+  // Of the worker, or of the spinner thread.
+  Warnings warnings_;
   std::size_t published_odometry_ = 0;
-  std::optional<Stamp> published_frame_;
-  std::size_t published_submaps_ = 0;
+  std::size_t published_live_ = 1;
+  ros::WallTime started_ = ros::WallTime::now();
+  ros::Time last_time_;
+  ros::WallTime last_time_change_ = ros::WallTime::now();
 
   InputQueue queue_;
   ros::Subscriber odometry_subscriber_;
   ros::Subscriber objects_subscriber_;
-  ros::WallTimer trajectory_timer_;
+  std::vector<ros::ServiceServer> services_;
+  ros::WallTimer slow_timer_;
+  std::unique_ptr<NodeDiagnostics> diagnostics_;
   std::thread worker_;
 };
+
+/// The node with the parameters of a private handle. A relative `class_table` is looked up in `config_folder` first.
+/// Throws InputError or ConfigError for parameters that cannot be used.
+std::unique_ptr<SlamNode> makeSlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle,
+                                       const std::string& config_folder);
 
 }  // namespace semantic_mht_slam

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "semantic_mht_slam/ros/topic_monitor.h"
+#include "semantic_mht_slam/slam/frame_assembler.h"
+
+namespace semantic_mht_slam {
+
+/// What the node's worker knows of its input and of the estimator.
+struct EstimatorStatus {
+  InputCounters counters;
+  std::size_t odometry_wrong_frames = 0;
+  std::string wrong_frames;  ///< the newest ones, "'camera_init' to 'camera'"
+  std::size_t objects_without_transform = 0;
+  std::string unconnected_frame;               ///< the newest one
+  std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
+  std::size_t resets = 0;                      ///< new maps begun
+  std::string method;
+  std::string mode = "mapping";
+  std::size_t hypotheses = 0;
+  std::size_t landmarks = 0;  ///< of the finished submaps
+  std::size_t submaps = 0;    ///< finished
+  std::size_t loops = 0;      ///< accepted
+};
+
+/// Times that frames took, of the last 1000.
+struct FrameTimes {
+  double mean_ms = 0.0;
+  double p99_ms = 0.0;
+  double max_ms = 0.0;
+};
+
+/// Keeps the newest 1000 frame times.
+class FrameTimer {
+ public:
+  void add(double time_ms);
+  FrameTimes times() const;
+
+ private:
+  std::deque<double> times_ms_;
+};
+
+/// ROS time against wall time.
+struct ClockStatus {
+  bool use_sim_time = false;
+  std::optional<double> time_s;  ///< ROS time; empty while nothing has come on /clock
+  double still_s = 0.0;          ///< wall time since ROS time changed
+};
+
+/// All that diagnostics are made of.
+struct NodeStatus {
+  std::string odom_frame;
+  std::string base_frame;
+  std::string class_table;
+  double odometry_history_s = 10.0;
+  double running_s = 0.0;  ///< wall time since the node started
+  ClockStatus clock;
+  TopicStatus odometry;  ///< delay: of ROS time against the stamp
+  TopicStatus objects;   ///< delay: of the newest odometry's stamp against the stamp
+  EstimatorStatus estimator;
+  std::size_t queue_length = 0;
+  std::size_t queue_capacity = 0;
+  std::size_t queue_dropped = 0;
+  FrameTimes frame_times;
+  double resident_mb = 0.0;
+};
+
+/// Resident memory of this process in MB; 0 if the system does not tell.
+double residentMegabytes();
+
+}  // namespace semantic_mht_slam

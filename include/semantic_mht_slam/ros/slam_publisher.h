@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+
+#include <ros/ros.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <semantic_mht_slam/SemanticMap.h>
+
+#include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/ros/correction_policy.h"
+#include "semantic_mht_slam/slam/slam.h"
+
+namespace semantic_mht_slam {
+
+/// What the node tells the world: tf `map -> odom`, `pose`, `hypotheses`, `map`, `trajectory` and `markers/*`. The
+/// caller sees to it that the estimator does not change meanwhile.
+class SlamPublisher {
+ public:
+  SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, const ClassTable& classes);
+
+  /// tf and pose of the newest odometry sample, with the correction that the policy allows.
+  void publishPose(const Slam& slam, const LiveConfig& live);
+
+  /// Objects and hypotheses of the newest frame if it is a new one, and the map if a submap was finished.
+  void publishFrame(const Slam& slam, const LiveConfig& live);
+
+  void publishMap(const Slam& slam, const LiveConfig& live);
+
+  /// The landmark markers of the newest map once more, drawn as `live` says.
+  void publishLandmarkMarkers(const LiveConfig& live);
+
+  void publishTrajectory(const std::vector<StampedPose>& trajectory);
+
+  /// A new map begins: empties what is latched.
+  void startAgain();
+
+  /// Landmarks of the newest published map.
+  std::size_t landmarks() const { return map_.landmarks.size(); }
+
+ private:
+  const NodeConfig config_;
+  const ClassTable classes_;
+  tf2_ros::TransformBroadcaster transform_broadcaster_;
+  ros::Publisher pose_publisher_;
+  ros::Publisher trajectory_publisher_;
+  ros::Publisher objects_publisher_;
+  ros::Publisher landmarks_publisher_;
+  ros::Publisher hypotheses_publisher_;
+  ros::Publisher map_publisher_;
+  CorrectionFollower correction_;
+  std::optional<Stamp> published_frame_;
+  std::size_t published_submaps_ = 0;
+  SemanticMap map_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,222 @@
+#include "semantic_mht_slam/ros/diagnosis.h"
+
+#include <cmath>
+#include <optional>
+
+#include "semantic_mht_slam/common/text.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+constexpr double kStart_s = 3.0;  // time to connect before silence is a fault
+constexpr double kOdometrySilence_s = 2.0;
+constexpr double kObjectsSilence_s = 10.0;  // detectors may be slow or see nothing for a while
+constexpr double kClockSilence_s = 2.0;
+constexpr double kApart_s = 1.0;         // frames before the very first odometry are no fault
+constexpr double kClockOffset_s = 10.0;  // of stamps against the clock: more than a delay
+
+std::string seconds(double value_s) {
+  return formatFixed(value_s, 1) + " s";
+}
+
+/// Collects findings: the first one becomes the message.
+class Finding {
+ public:
+  explicit Finding(DiagnosticStatusWrapper& status) : status_(status) {}
+
+  void report(bool is_wrong, unsigned char level, const std::string& message, const std::string& fix) {
+    if (!is_wrong || is_found_) return;
+    is_found_ = true;
+    status_.summary(level, message);
+    status_.add(kFixKey, fix);
+  }
+  void error(bool is_wrong, const std::string& message, const std::string& fix) {
+    report(is_wrong, DiagnosticStatus::ERROR, message, fix);
+  }
+  void warn(bool is_wrong, const std::string& message, const std::string& fix) {
+    report(is_wrong, DiagnosticStatus::WARN, message, fix);
+  }
+  void otherwise(const std::string& message) {
+    if (!is_found_) status_.summary(DiagnosticStatus::OK, message);
+  }
+
+ private:
+  DiagnosticStatusWrapper& status_;
+  bool is_found_ = false;
+};
+
+void addTopic(const TopicStatus& topic, DiagnosticStatusWrapper& status) {
+  status.add("topic", topic.topic);
+  status.add("publishers", topic.publishers);
+  status.add("messages", topic.received);
+  status.add("rate (Hz)", formatFixed(topic.rate_hz, 2));
+  if (topic.silent_s) status.add("silent for (s)", formatFixed(*topic.silent_s, 1));
+  if (topic.stamp) status.add("newest stamp (s)", formatFixed(secondsFromStamp(*topic.stamp), 3));
+  if (topic.delay_s) status.add("delay (s)", formatFixed(*topic.delay_s, 3));
+}
+
+/// "class ids 7, 99", or empty.
+std::string unknownClasses(const EstimatorStatus& now, const EstimatorStatus& before) {
+  std::vector<std::string> ids;
+  for (const auto& [id, count] : now.unknown_classes) {
+    const auto known = before.unknown_classes.find(id);
+    if (known == before.unknown_classes.end() || known->second < count) ids.push_back(std::to_string(id));
+  }
+  if (ids.empty()) return {};
+  return (ids.size() == 1 ? "class id " : "class ids ") + joined(ids);
+}
+
+void addUnknownClasses(const EstimatorStatus& estimator, DiagnosticStatusWrapper& status) {
+  for (const auto& [id, count] : estimator.unknown_classes) {
+    status.add("objects of unknown class id " + std::to_string(id), count);
+  }
+}
+
+/// How far the newest objects' stamp lies from the newest odometry, in words.
+std::string apart(const TopicStatus& objects) {
+  if (!objects.delay_s) return {};
+  return seconds(std::abs(*objects.delay_s)) + (*objects.delay_s < 0.0 ? " after" : " before");
+}
+
+}  // namespace
+
+void diagnoseClock(const NodeStatus& now, const NodeStatus&, DiagnosticStatusWrapper& status) {
+  const ClockStatus& clock = now.clock;
+  const double off_s = now.odometry.delay_s.value_or(0.0);
+  Finding finding(status);
+  finding.error(clock.use_sim_time && !clock.time_s, "use_sim_time is true and nothing comes on /clock",
+                "play the bag with --clock, or run 'rosparam set use_sim_time false' and start the node again");
+  finding.warn(clock.use_sim_time && clock.still_s > kClockSilence_s,
+               "/clock stands still for " + seconds(clock.still_s), "is the player paused, or the bag over?");
+  finding.warn(!clock.use_sim_time && std::abs(off_s) > kClockOffset_s,
+               now.odometry.topic + " is stamped " + seconds(std::abs(off_s)) + (off_s > 0.0 ? " before" : " after") +
+                   " the time of this machine",
+               "for a bag: 'rosparam set use_sim_time true' before the nodes start, and play it with --clock; live: "
+               "set the clocks of the machines (chrony, ntp)");
+  finding.otherwise(clock.use_sim_time ? "/clock runs" : "time of this machine");
+  status.add("use_sim_time", clock.use_sim_time ? "true" : "false");
+  if (clock.time_s) status.add("time (s)", formatFixed(*clock.time_s, 3));
+}
+
+void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, DiagnosticStatusWrapper& status) {
+  const TopicStatus& odometry = now.odometry;
+  const InputCounters& counters = now.estimator.counters;
+  const std::string expected = "'" + now.odom_frame + "' to '" + now.base_frame + "'";
+  Finding finding(status);
+  finding.error(odometry.received == 0 && now.running_s > kStart_s, "no odometry on " + odometry.topic,
+                odometry.publishers == 0 ? "nobody publishes it: start the odometry, or remap odometry:=/its/topic"
+                                         : "its publisher sends nothing: look at what it waits for");
+  finding.error(odometry.silent_s.value_or(0.0) > kOdometrySilence_s,
+                "no odometry on " + odometry.topic + " for " + seconds(odometry.silent_s.value_or(0.0)),
+                "look at the odometry's node, or at the player if this is a bag");
+  finding.error(now.estimator.odometry_wrong_frames > before.estimator.odometry_wrong_frames,
+                odometry.topic + " goes from " + now.estimator.wrong_frames + ", expected is " + expected,
+                "set node/odom_frame to its header.frame_id and node/base_frame to its child_frame_id");
+  finding.error(counters.odometry_invalid > before.estimator.counters.odometry_invalid,
+                odometry.topic + " holds poses that are not finite or whose quaternion has no unit norm",
+                "mend the odometry's orientation: w = 1 for none, never all zero");
+  finding.warn(counters.odometry_not_rising > before.estimator.counters.odometry_not_rising,
+               odometry.topic + " holds stamps that do not rise",
+               "let one node alone publish it, with a new header.stamp in every message");
+  finding.otherwise(odometry.received == 0 ? "waiting for odometry"
+                                           : formatFixed(odometry.rate_hz, 1) + " Hz on " + odometry.topic);
+  addTopic(odometry, status);
+  status.add("expected frames", expected);
+  status.add("used", counters.odometry);
+  status.add("dropped, wrong frames", now.estimator.odometry_wrong_frames);
+  status.add("dropped, invalid", counters.odometry_invalid);
+  status.add("dropped, stamp does not rise", counters.odometry_not_rising);
+}
+
+namespace {
+
+void findObjectsFault(const NodeStatus& now, const NodeStatus& before, Finding& finding) {
+  const TopicStatus& objects = now.objects;
+  const EstimatorStatus& estimator = now.estimator;
+  const InputCounters& counters = estimator.counters;
+  const InputCounters& old = before.estimator.counters;
+  const std::string classes = unknownClasses(estimator, before.estimator);
+  finding.warn(objects.received == 0 && now.running_s > kStart_s, "no objects on " + objects.topic,
+               objects.publishers == 0
+                   ? "nobody publishes them: start the detector, or remap objects:=/its/topic"
+                   : "the detector sends nothing: it should send an empty array if it sees nothing");
+  finding.error(estimator.objects_without_transform > before.estimator.objects_without_transform,
+                "no transform from '" + estimator.unconnected_frame + "' to '" + now.base_frame + "'",
+                "publish where the sensor is: rosrun tf2_ros static_transform_publisher X Y Z YAW PITCH ROLL " +
+                    now.base_frame + " " + estimator.unconnected_frame);
+  finding.error(
+      counters.frames_far_ahead > old.frames_far_ahead || counters.frames_before_odometry > old.frames_before_odometry,
+      objects.topic + " is stamped " + apart(objects) + " the odometry: dropped",
+      "stamp objects with the time of their scan or image, by the same clock as the odometry; "
+      "input/odometry_history (" +
+          seconds(now.odometry_history_s) + ") is how late they may be");
+  finding.warn(!classes.empty(), classes + " on " + objects.topic + " not in the class table " + now.class_table,
+               "add the id to the table, or set class_table to the table of this detector");
+  finding.warn(counters.detections_invalid > old.detections_invalid,
+               objects.topic + " holds objects whose position, covariance, score or size cannot be used",
+               "positions must be finite, covariances positive definite or all zero, scores in [0, 1] or -1");
+  finding.warn(counters.frames_not_rising > old.frames_not_rising, objects.topic + " holds stamps that do not rise",
+               "let one detector alone publish it, in the order of its stamps");
+  finding.warn(counters.frames_in_odometry_gap > old.frames_in_odometry_gap,
+               objects.topic + " is stamped within a gap of the odometry", "odometry must not pause: see odometry");
+  finding.warn(counters.frames_waiting_too_long > old.frames_waiting_too_long,
+               objects.topic + " waits for odometry in vain", "see odometry");
+  finding.warn(objects.silent_s.value_or(0.0) > kObjectsSilence_s,
+               "no objects on " + objects.topic + " for " + seconds(objects.silent_s.value_or(0.0)),
+               "look at the detector; the pose goes on by odometry alone");
+}
+
+}  // namespace
+
+void diagnoseObjects(const NodeStatus& now, const NodeStatus& before, DiagnosticStatusWrapper& status) {
+  const InputCounters& counters = now.estimator.counters;
+  Finding finding(status);
+  findObjectsFault(now, before, finding);
+  finding.otherwise(now.objects.received == 0 ? "waiting for objects"
+                                              : formatFixed(now.objects.rate_hz, 1) + " Hz on " + now.objects.topic);
+  addTopic(now.objects, status);
+  status.add("frames used", counters.frames);
+  status.add("objects used", counters.detections);
+  status.add("dropped, no transform", now.estimator.objects_without_transform);
+  status.add("dropped, before the odometry", counters.frames_before_odometry);
+  status.add("dropped, far ahead of the odometry", counters.frames_far_ahead);
+  status.add("dropped, stamp does not rise", counters.frames_not_rising);
+  status.add("dropped, in a gap of the odometry", counters.frames_in_odometry_gap);
+  status.add("dropped, waited too long", counters.frames_waiting_too_long);
+  status.add("objects dropped, unusable", counters.detections_invalid);
+  addUnknownClasses(now.estimator, status);
+}
+
+void diagnoseQueue(const NodeStatus& now, const NodeStatus& before, DiagnosticStatusWrapper& status) {
+  Finding finding(status);
+  finding.warn(now.queue_dropped > before.queue_dropped, "the queue is full: messages are dropped",
+               "play the bag slower, raise node/queue_size for bursts, or make frames cheaper "
+               "(fewer hypotheses, docs/parameters.md)");
+  finding.otherwise(std::to_string(now.queue_length) + " of " + std::to_string(now.queue_capacity) + " wait");
+  status.add("waiting", now.queue_length);
+  status.add("capacity", now.queue_capacity);
+  status.add("dropped", now.queue_dropped);
+}
+
+void diagnoseEstimator(const NodeStatus& now, const NodeStatus&, DiagnosticStatusWrapper& status) {
+  const EstimatorStatus& estimator = now.estimator;
+  Finding(status).otherwise(std::to_string(estimator.hypotheses) + " hypotheses, " +
+                            std::to_string(estimator.landmarks) + " landmarks, " +
+                            formatFixed(now.frame_times.mean_ms, 1) + " ms a frame");
+  status.add("method", estimator.method);
+  status.add("mode", estimator.mode);
+  status.add("hypotheses", estimator.hypotheses);
+  status.add("landmarks", estimator.landmarks);
+  status.add("submaps", estimator.submaps);
+  status.add("loops", estimator.loops);
+  status.add("maps begun", estimator.resets + 1);
+  status.add("frame time, mean (ms)", formatFixed(now.frame_times.mean_ms, 3));
+  status.add("frame time, p99 (ms)", formatFixed(now.frame_times.p99_ms, 3));
+  status.add("frame time, max (ms)", formatFixed(now.frame_times.max_ms, 3));
+  status.add("resident memory (MB)", formatFixed(now.resident_mb, 1));
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,69 @@
+#include <XmlRpcValue.h>
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/ros.h>
+
+#include "semantic_mht_slam/ros/diagnosis.h"
+#include "semantic_mht_slam/ros/doctor.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kPoll_s = 0.05;
+
+/// Publishers of a topic, as the master knows them.
+std::size_t publishersOf(const std::string& topic) {
+  XmlRpc::XmlRpcValue request;
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue state;
+  request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false)) return 0;
+  XmlRpc::XmlRpcValue& publishers = state[0];
+  for (int i = 0; i < publishers.size(); ++i) {
+    if (static_cast<std::string>(publishers[i][0]) == topic) return static_cast<std::size_t>(publishers[i][1].size());
+  }
+  return 0;
+}
+
+/// Statuses of the node, the newest of each name in the order in which the node has them.
+void keepNewest(const diagnostic_msgs::DiagnosticArray& array, const std::string& node,
+                std::vector<diagnostic_msgs::DiagnosticStatus>& newest) {
+  std::vector<diagnostic_msgs::DiagnosticStatus> own;
+  for (const diagnostic_msgs::DiagnosticStatus& status : array.status) {
+    const bool is_own = "/" + status.name.substr(0, status.name.rfind(": ")) == node;
+    if (is_own && status.hardware_id == kDiagnosticsHardwareId) own.push_back(status);
+  }
+  if (!own.empty()) newest = std::move(own);
+}
+
+}  // namespace
+
+SystemObservation observeSystem(const std::string& node, double watch_s) {
+  SystemObservation system;
+  system.master_uri = ros::master::getURI();
+  system.node = node;
+  system.has_master = ros::master::check();
+  if (!system.has_master) return system;
+  ros::V_string nodes;
+  ros::master::getNodes(nodes);
+  for (const std::string& name : nodes) system.is_node_registered = system.is_node_registered || name == node;
+  if (!system.is_node_registered) return system;
+
+  ros::NodeHandle handle;
+  const auto subscriber = handle.subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 100,
+      [&](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { keepNewest(*message, node, system.diagnostics); });
+  const ros::WallTime begin = ros::WallTime::now();
+  while (ros::ok() && (ros::WallTime::now() - begin).toSec() < watch_s) {
+    ros::spinOnce();
+    ros::WallDuration(kPoll_s).sleep();
+  }
+  system.watched_s = watch_s;
+  ros::param::get("/use_sim_time", system.use_sim_time);
+  system.clock_publishers = publishersOf("/clock");
+  ros::master::V_TopicInfo topics;
+  ros::master::getTopics(topics);
+  for (const ros::master::TopicInfo& topic : topics) system.type_of_topic[topic.name] = topic.datatype;
+  return system;
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,93 @@
+#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/slam_node.h"
+
+// What other nodes ask of the node: its services, and the status behind its diagnostics.
+namespace semantic_mht_slam {
+
+void SlamNode::advertiseServices() {
+  services_.push_back(handle_.advertiseService("finish_submap", &SlamNode::finishSubmap, this));
+  services_.push_back(handle_.advertiseService("reset", &SlamNode::reset, this));
+  services_.push_back(handle_.advertiseService("set_mode", &SlamNode::setMode, this));
+}
+
+bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  const std::lock_guard<std::mutex> lock(slam_mutex_);
+  const std::size_t before = slam_->map().submaps().size();
+  slam_->finish();
+  const std::size_t submaps = slam_->map().submaps().size();
+  response.success = submaps > before;
+  if (!response.success) {
+    response.message = config_.slam.method == Method::kOdometry ? "the method 'odometry' makes no map"
+                                                                : "no submap is open: no objects since the last one";
+    return true;
+  }
+  publisher_.publishMap(*slam_, live_.get());
+  noteStatus();
+  response.message = "submap " + std::to_string(submaps - 1) + " is finished; the map holds " +
+                     std::to_string(publisher_.landmarks()) + " landmarks";
+  return true;
+}
+
+bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  const std::lock_guard<std::mutex> lock(slam_mutex_);
+  const std::size_t landmarks = publisher_.landmarks();
+  waiting_objects_.clear();
+  startAgain();
+  noteStatus();
+  response.success = true;
+  response.message = "a new map begins; the old one had " + std::to_string(landmarks) + " landmarks";
+  return true;
+}
+
+bool SlamNode::setMode(SetMode::Request& request, SetMode::Response& response) {
+  if (request.mode == SetMode::Request::MAPPING) {
+    response.success = true;
+    response.message = "mapping";
+  } else if (request.mode == SetMode::Request::LOCALIZATION) {
+    response.message = "no map is loaded that one could find oneself in; the node goes on mapping";
+  } else {
+    response.message = "there is no mode " + std::to_string(request.mode) + "; 0 is mapping, 1 localization";
+  }
+  return true;
+}
+
+ClockStatus SlamNode::clockStatus() {
+  ClockStatus clock;
+  clock.use_sim_time = ros::Time::isSimTime();
+  const ros::Time now = ros::Time::now();
+  const ros::WallTime wall_now = ros::WallTime::now();
+  if (now != last_time_) last_time_change_ = wall_now;
+  last_time_ = now;
+  if (!now.isZero()) clock.time_s = now.toSec();
+  clock.still_s = (wall_now - last_time_change_).toSec();
+  return clock;
+}
+
+NodeStatus SlamNode::status() {
+  const double now_s = ros::WallTime::now().toSec();
+  NodeStatus status;
+  status.odom_frame = config_.node.odom_frame;
+  status.base_frame = config_.node.base_frame;
+  status.class_table = config_.class_table;
+  status.odometry_history_s = config_.slam.input.odometry_history_s;
+  status.running_s = (ros::WallTime::now() - started_).toSec();
+  status.clock = clockStatus();
+  status.queue_length = queue_.length();
+  status.queue_capacity = static_cast<std::size_t>(config_.node.queue_size);
+  status.queue_dropped = queue_.dropped();
+  status.resident_mb = residentMegabytes();
+  {
+    const std::lock_guard<std::mutex> lock(status_mutex_);
+    status.odometry = odometry_monitor_.status(now_s);
+    status.objects = objects_monitor_.status(now_s);
+    status.estimator = noted_estimator_;
+    status.frame_times = frame_timer_.times();
+  }
+  status.odometry.topic = odometry_subscriber_.getTopic();
+  status.odometry.publishers = odometry_subscriber_.getNumPublishers();
+  status.objects.topic = objects_subscriber_.getTopic();
+  status.objects.publishers = objects_subscriber_.getNumPublishers();
+  return status;
+}
+
+}  // namespace semantic_mht_slam

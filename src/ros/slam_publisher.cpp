@@ -1,0 +1,73 @@
+#include "semantic_mht_slam/ros/slam_publisher.h"
+
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <nav_msgs/Path.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/markers.h"
+
+namespace semantic_mht_slam {
+
+SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, const ClassTable& classes)
+    : config_(config),
+      classes_(classes),
+      pose_publisher_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", 100)),
+      trajectory_publisher_(handle.advertise<nav_msgs::Path>("trajectory", 1, true)),
+      objects_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/objects", 10, true)),
+      landmarks_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/landmarks", 2, true)),
+      hypotheses_publisher_(handle.advertise<HypothesisTree>("hypotheses", 10)),
+      map_publisher_(handle.advertise<SemanticMap>("map", 1, true)) {}
+
+void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
+  const StampedPose latest = *slam.latestPose();
+  const Pose T_map_odom = slam.T_map_odom();
+  const Pose T_odom_base = T_map_odom.inverse() * latest.T_world_base;
+  const Pose followed = correction_.follow(T_map_odom, T_odom_base, latest.stamp, live);
+  transform_broadcaster_.sendTransform(toTransform({latest.stamp, followed}, config_.map_frame, config_.odom_frame));
+  geometry_msgs::PoseWithCovarianceStamped message;
+  message.header.stamp = toRosTime(latest.stamp);
+  message.header.frame_id = config_.map_frame;
+  const bool is_there = live.correction == CorrectionPolicy::kJump;
+  message.pose.pose = toMessage(is_there ? latest.T_world_base : followed * T_odom_base);
+  pose_publisher_.publish(message);
+}
+
+void SlamPublisher::publishFrame(const Slam& slam, const LiveConfig& live) {
+  const std::optional<Frame>& frame = slam.latestFrame();
+  if (!frame || frame->stamp == published_frame_) return;
+  published_frame_ = frame->stamp;
+  objects_publisher_.publish(toObjectMarkers(*frame, slam.T_map_odom(), classes_, config_.map_frame));
+  if (slam.hypotheses().empty()) return;
+  hypotheses_publisher_.publish(toMessage(*frame, config_.map_frame, slam.submapIndex(), slam.hypotheses()));
+  if (slam.map().submaps().size() != published_submaps_) publishMap(slam, live);
+}
+
+void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {
+  published_submaps_ = slam.map().submaps().size();
+  const Stamp stamp = slam.latestFrame() ? slam.latestFrame()->stamp : 0;
+  map_ = toMessage(stamp, config_.map_frame, classes_, slam.landmarks(), published_submaps_);
+  map_publisher_.publish(map_);
+  publishLandmarkMarkers(live);
+}
+
+void SlamPublisher::publishLandmarkMarkers(const LiveConfig& live) {
+  landmarks_publisher_.publish(toLandmarkMarkers(map_, classes_, live));
+}
+
+void SlamPublisher::publishTrajectory(const std::vector<StampedPose>& trajectory) {
+  trajectory_publisher_.publish(toPath(trajectory, config_.map_frame));
+}
+
+void SlamPublisher::startAgain() {
+  correction_.reset();
+  published_frame_.reset();
+  published_submaps_ = 0;
+  map_ = toMessage(0, config_.map_frame, classes_, {}, 0);
+  map_publisher_.publish(map_);
+  publishLandmarkMarkers({});
+  publishTrajectory({});
+  hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, 0, {}));
+}
+
+}  // namespace semantic_mht_slam

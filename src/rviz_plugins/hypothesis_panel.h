@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <geometry_msgs/PointStamped.h>
+#include <ros/ros.h>
+#include <rviz/panel.h>
+
+#include <semantic_mht_slam/HypothesisTree.h>
+#include <semantic_mht_slam/SemanticMap.h>
+
+#include "service_caller.h"
+
+class QLabel;
+class QLineEdit;
+class QPushButton;
+class QTableWidget;
+
+namespace semantic_mht_slam {
+
+/// rviz panel: a live table of the hypotheses, counters, the node's services as buttons, and what is known of the
+/// landmark that was clicked with the tool Publish Point.
+class HypothesisPanel : public rviz::Panel {
+  Q_OBJECT
+
+ public:
+  explicit HypothesisPanel(QWidget* parent = nullptr);
+
+  void onInitialize() override;
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ private:
+  QWidget* makeTable();
+  QWidget* makeButtons();
+  QPushButton* makeButton(const QString& name, const QString& tip);
+  void connectButtons();
+
+  // The messages come in the thread of the display; they are kept, and shown a few times a second.
+  void noteDiagnostics(const diagnostic_msgs::DiagnosticArray& message);
+  void showLandmark(const geometry_msgs::PointStamped& click);
+
+  void refresh();
+  void refreshTable();
+  void refreshCounters();
+  void refreshStatus();
+  std::string fileName() const;
+  void askOrReset();
+
+  ros::NodeHandle handle_;
+  ros::Subscriber tree_subscriber_;
+  ros::Subscriber map_subscriber_;
+  ros::Subscriber diagnostics_subscriber_;
+  ros::Subscriber click_subscriber_;
+  HypothesisTree tree_;
+  bool has_new_tree_ = false;
+  SemanticMapConstPtr map_;
+  std::map<std::string, std::string> figures_;  ///< of the node's diagnostics
+  std::string fault_;                           ///< the first one of the node's diagnostics, or empty
+  ServiceCaller services_;
+  ros::WallTime reset_asked_;
+
+  QTableWidget* table_ = nullptr;
+  QLabel* counters_ = nullptr;
+  QLabel* fault_label_ = nullptr;
+  QLineEdit* file_ = nullptr;
+  QPushButton* save_ = nullptr;
+  QPushButton* load_ = nullptr;
+  QPushButton* reset_ = nullptr;
+  QPushButton* finish_ = nullptr;
+  QPushButton* mapping_ = nullptr;
+  QPushButton* localization_ = nullptr;
+  QLabel* landmark_ = nullptr;
+  QLabel* status_ = nullptr;
+};
+
+}  // namespace semantic_mht_slam

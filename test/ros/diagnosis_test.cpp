@@ -1,0 +1,188 @@
+#include "semantic_mht_slam/ros/diagnosis.h"
+
+#include <functional>
+
+#include <gtest/gtest.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+using Diagnose = void (*)(const NodeStatus&, const NodeStatus&, DiagnosticStatusWrapper&);
+
+/// A node that works.
+NodeStatus wellStatus() {
+  NodeStatus status;
+  status.odom_frame = "odom";
+  status.base_frame = "base_link";
+  status.class_table = "classes.yaml";
+  status.running_s = 60.0;
+  status.clock.time_s = 1000.0;
+  status.odometry = {"/odometry", 1, 600, 10.0, 0.1, 1000000000000, 0.02};
+  status.objects = {"/objects", 1, 600, 10.0, 0.1, 1000000000000, 0.05};
+  status.queue_capacity = 2000;
+  return status;
+}
+
+struct Fault {
+  std::string name;
+  Diagnose diagnose;
+  unsigned char level;
+  std::function<void(NodeStatus&)> cause;
+  std::vector<std::string> named;  ///< parts of the message
+};
+
+class DiagnosisTest : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(DiagnosisTest, NamesTheFaultAndAFixAndIsOkWithoutIt) {
+  const Fault& fault = GetParam();
+  DiagnosticStatusWrapper well;
+  fault.diagnose(wellStatus(), wellStatus(), well);
+  EXPECT_EQ(well.level, DiagnosticStatus::OK) << well.message;
+
+  NodeStatus status = wellStatus();
+  fault.cause(status);
+  DiagnosticStatusWrapper named;
+  fault.diagnose(status, wellStatus(), named);
+  EXPECT_EQ(named.level, fault.level);
+  for (const std::string& part : fault.named) EXPECT_NE(named.message.find(part), std::string::npos) << named.message;
+  ASSERT_FALSE(named.values.empty());
+  EXPECT_EQ(named.values.front().key, kFixKey);
+  EXPECT_FALSE(named.values.front().value.empty());
+}
+
+TEST_P(DiagnosisTest, WhatWasDroppedLongAgoIsNoFaultAnyMore) {
+  NodeStatus status = wellStatus();
+  const EstimatorStatus fresh = status.estimator;
+  GetParam().cause(status);
+  const bool is_about_drops = status.estimator.counters.odometry_invalid > fresh.counters.odometry_invalid ||
+                              status.queue_dropped > 0 || !status.estimator.unknown_classes.empty() ||
+                              status.estimator.objects_without_transform > 0;
+  if (!is_about_drops) return;
+  DiagnosticStatusWrapper later;
+  GetParam().diagnose(status, status, later);
+  EXPECT_EQ(later.level, DiagnosticStatus::OK) << later.message;
+}
+
+const std::vector<Fault> kFaults = {
+    {"NoClock",
+     diagnoseClock,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.clock.use_sim_time = true;
+       s.clock.time_s.reset();
+     },
+     {"use_sim_time", "/clock"}},
+    {"ClockStandsStill",
+     diagnoseClock,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.clock.use_sim_time = true;
+       s.clock.still_s = 4.0;
+     },
+     {"stands still", "4.0 s"}},
+    {"SimTimeOff",
+     diagnoseClock,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.odometry.delay_s = 86400.0; },
+     {"/odometry", "86400.0 s before"}},
+    {"NoOdometry",
+     diagnoseOdometry,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.odometry = {};
+       s.odometry.topic = "/odometry";
+     },
+     {"no odometry on /odometry"}},
+    {"SilentOdometry",
+     diagnoseOdometry,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) { s.odometry.silent_s = 5.0; },
+     {"no odometry", "5.0 s"}},
+    {"WrongFrames",
+     diagnoseOdometry,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.estimator.odometry_wrong_frames = 3;
+       s.estimator.wrong_frames = "'camera_init' to 'camera'";
+     },
+     {"'camera_init' to 'camera'", "'odom' to 'base_link'"}},
+    {"InvalidOdometry",
+     diagnoseOdometry,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) { s.estimator.counters.odometry_invalid = 1; },
+     {"quaternion"}},
+    {"NoObjects",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.objects = {};
+       s.objects.topic = "/objects";
+     },
+     {"no objects on /objects"}},
+    {"SilentObjects",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.objects.silent_s = 30.0; },
+     {"no objects", "30.0 s"}},
+    {"UnconnectedFrame",
+     diagnoseObjects,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.estimator.objects_without_transform = 1;
+       s.estimator.unconnected_frame = "nowhere";
+     },
+     {"'nowhere' to 'base_link'"}},
+    {"StampsBehind",
+     diagnoseObjects,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.estimator.counters.frames_before_odometry = 1;
+       s.objects.delay_s = 13.0;
+     },
+     {"13.0 s before the odometry"}},
+    {"StampsAhead",
+     diagnoseObjects,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.estimator.counters.frames_far_ahead = 1;
+       s.objects.delay_s = -13.0;
+     },
+     {"13.0 s after the odometry"}},
+    {"UnknownClasses",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.estimator.unknown_classes = {{7, 2}, {99, 1}};
+     },
+     {"class ids 7, 99", "classes.yaml"}},
+    {"FullQueue", diagnoseQueue, DiagnosticStatus::WARN, [](NodeStatus& s) { s.queue_dropped = 5; }, {"full"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Faults, DiagnosisTest, ::testing::ValuesIn(kFaults),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(TopicMonitorTest, RateIsThatOfTheMessagesAndFallsWhenTheyStop) {
+  TopicMonitor monitor;
+  for (int i = 0; i < 30; ++i) monitor.arrived(i, std::nullopt, 0.1 * i);
+  EXPECT_NEAR(monitor.status(2.9).rate_hz, 10.0, 1e-9);
+  for (int i = 30; i < 300; ++i) monitor.arrived(i, std::nullopt, 0.1 * i);
+  EXPECT_NEAR(monitor.status(29.95).rate_hz, 10.0, 0.11);
+  EXPECT_EQ(monitor.status(60.0).rate_hz, 0.0);
+  EXPECT_NEAR(*monitor.status(60.0).silent_s, 30.1, 1e-9);
+  EXPECT_EQ(monitor.status(60.0).received, 300U);
+}
+
+TEST(FrameTimerTest, PercentilesAreThoseOfTheNewestThousand) {
+  FrameTimer timer;
+  EXPECT_EQ(timer.times().max_ms, 0.0);
+  for (int i = 0; i < 5000; ++i) timer.add(1e6);
+  for (int i = 1; i <= 1000; ++i) timer.add(i);
+  EXPECT_NEAR(timer.times().mean_ms, 500.5, 1e-9);
+  EXPECT_NEAR(timer.times().p99_ms, 990.0, 1.0);
+  EXPECT_EQ(timer.times().max_ms, 1000.0);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam

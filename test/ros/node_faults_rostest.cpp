@@ -1,0 +1,213 @@
+#include <algorithm>
+#include <atomic>
+
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <semantic_mht_slam/SemanticMap.h>
+#include <semantic_mht_slam/SetMode.h>
+
+#include "support/running_node.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+TEST(NodeFaultsTest, QueueThatIsFullDropsAndSaysSoAndThePoseGoesOn) {
+  RunningNode node("full", {"_node/queue_size:=1"});
+  ASSERT_TRUE(node.isReady());
+  for (int i = 0; i < 3000; ++i) {
+    node.sendOdometry(0.01 * i);
+    node.sendObjects(0.01 * i);
+  }
+  EXPECT_TRUE(node.comesToReport("queue", "the queue is full"));
+  EXPECT_GT(std::stoul("0" + node.value("queue", "dropped")), 0U);
+  ros::WallDuration(1.0).sleep();
+  node.sendOdometry(31.0);
+  EXPECT_TRUE(node.comesToSay("odometry", "newest stamp (s)", "1031.000"));
+  EXPECT_TRUE(waitFor([&] { return node.value("queue", "waiting") == "0"; }));
+}
+
+TEST(NodeFaultsTest, DetectionsLateByTwoSecondsAreAllUsed) {
+  RunningNode node("late");
+  ASSERT_TRUE(node.isReady());
+  for (int i = 0; i < 100; ++i) {
+    node.sendOdometry(0.1 * i);
+    if (i > 20) node.sendObjects(0.1 * (i - 20) - 0.05);
+    ros::WallDuration(0.002).sleep();  // so that odometry and objects do arrive in this order
+  }
+  EXPECT_TRUE(node.comesToSay("objects", "frames used", "79"));
+  EXPECT_EQ(node.value("objects", "dropped, before the odometry"), "0");
+  EXPECT_NEAR(std::stod("0" + node.value("objects", "delay (s)")), 2.05, 0.3);
+}
+
+TEST(NodeFaultsTest, DetectionsMissingForThirtySecondsStopNothing) {
+  RunningNode node("missing");
+  ASSERT_TRUE(node.isReady());
+  const auto isMissing = [](int i) { return i > 100 && i <= 400; };
+  for (int i = 0; i < 500; ++i) {
+    node.sendOdometry(0.1 * i);
+    if (!isMissing(i)) node.sendObjects(0.1 * i);
+    ros::WallDuration(0.002).sleep();
+  }
+  EXPECT_TRUE(node.comesToSay("odometry", "used", "500"));
+  EXPECT_TRUE(node.comesToSay("objects", "frames used", "200"));
+}
+
+TEST(NodeFaultsTest, DetectionsBeforeAnyOdometryWaitForIt) {
+  RunningNode node("before");
+  ASSERT_TRUE(node.isReady());
+  for (int i = 1; i <= 20; ++i) node.sendObjects(0.1 * i);
+  EXPECT_TRUE(node.comesToReport("odometry", "no odometry on /before/odometry"));
+  for (int i = 0; i <= 30; ++i) node.sendOdometry(0.1 * i);
+  EXPECT_TRUE(node.comesToSay("objects", "frames used", "20"));
+}
+
+TEST(NodeFaultsTest, WrongFramesAndUnmappedClassesAreNamedInDiagnostics) {
+  RunningNode node("wrong", {"_node/tf_timeout:=0.2"});
+  ASSERT_TRUE(node.isReady());
+  for (int i = 0; i < 60; ++i) {
+    node.sendOdometry(0.1 * i);
+    node.sendOdometry(0.1 * i, "camera_init");
+    node.sendObjects(0.1 * i, 99);
+    ros::WallDuration(0.01).sleep();
+  }
+  EXPECT_TRUE(node.comesToReport("odometry", "'camera_init' to 'base_link', expected is 'odom' to 'base_link'"));
+  EXPECT_TRUE(node.comesToReport("objects", "class id 99 on /wrong/objects not in the class table"));
+  EXPECT_EQ(node.value("objects", "objects of unknown class id 99"), "180");
+  node.sendObjects(6.0, RunningNode::kPole, 1, "nowhere");
+  ros::WallDuration(0.5).sleep();
+  node.sendOdometry(6.1);
+  EXPECT_TRUE(node.comesToReport("objects", "no transform from 'nowhere' to 'base_link'"));
+}
+
+TEST(NodeFaultsTest, SlashBeforeAFrameIsNoFault) {
+  RunningNode node("slash");
+  ASSERT_TRUE(node.isReady());
+  node.sendOdometry(0.0, "/odom");
+  node.sendObjects(0.0, RunningNode::kPole, 1, "/base_link");
+  EXPECT_TRUE(node.comesToSay("objects", "frames used", "1"));
+}
+
+TEST(NodeFaultsTest, ClockThatFallsBackBeginsANewMap) {
+  RunningNode node("loop");
+  ASSERT_TRUE(node.isReady());
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 0; i < 100; ++i) {
+      node.sendOdometry(0.1 * i);
+      node.sendObjects(0.1 * i);
+      ros::WallDuration(0.002).sleep();
+    }
+  }
+  EXPECT_TRUE(node.comesToSay("estimator", "maps begun", "3"));
+  EXPECT_TRUE(node.comesToSay("odometry", "used", "100"));
+}
+
+TEST(NodeFaultsTest, InterruptEndsTheNodeWithinTwoSecondsUnderLoad) {
+  RunningNode node("interrupt");
+  ASSERT_TRUE(node.isReady());
+  for (int i = 0; i < 2000; ++i) {
+    node.sendOdometry(0.1 * i);
+    node.sendObjects(0.1 * i, RunningNode::kPole, 30);
+  }
+  const double seconds = node.process().stop(SIGINT, 10.0);
+  EXPECT_GE(seconds, 0.0);
+  EXPECT_LT(seconds, 2.0);
+  EXPECT_EQ(node.process().exitCode(), 0);
+}
+
+/// Calls a service of a node and returns what it answers; fails the test if it does not answer.
+template <class Service>
+typename Service::Response call(RunningNode& node, const std::string& name, typename Service::Request request = {}) {
+  typename Service::Response response;
+  ros::ServiceClient client = node.handle().serviceClient<Service>(name);
+  EXPECT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+  EXPECT_TRUE(client.call(request, response)) << name;
+  EXPECT_FALSE(response.message.empty());
+  return response;
+}
+
+TEST(NodeServicesTest, FinishSubmapAndResetAnswerAndDoWhatTheySay) {
+  RunningNode node("services");
+  SemanticMap map;
+  const auto subscriber = node.handle().subscribe<SemanticMap>(
+      "map", 10, boost::function<void(const SemanticMapConstPtr&)>([&](const SemanticMapConstPtr& m) { map = *m; }));
+  ASSERT_TRUE(node.isReady());
+  EXPECT_FALSE(call<std_srvs::Trigger>(node, "finish_submap").success) << "nothing was seen yet";
+  for (int i = 0; i < 30; ++i) {
+    node.sendOdometry(0.01 * i);
+    node.sendObjects(0.01 * i);
+    ros::WallDuration(0.002).sleep();
+  }
+  ASSERT_TRUE(node.comesToSay("objects", "frames used", "30"));
+  EXPECT_EQ(node.value("estimator", "submaps"), "0");
+  EXPECT_TRUE(call<std_srvs::Trigger>(node, "finish_submap").success);
+  EXPECT_TRUE(waitFor([&] { return map.submaps == 1U; }));
+  EXPECT_TRUE(node.comesToSay("estimator", "submaps", "1"));
+  EXPECT_FALSE(call<std_srvs::Trigger>(node, "finish_submap").success) << "nothing was seen since";
+
+  EXPECT_TRUE(call<std_srvs::Trigger>(node, "reset").success);
+  EXPECT_TRUE(waitFor([&] { return map.submaps == 0U; })) << "the latched map is empty again";
+  EXPECT_TRUE(node.comesToSay("odometry", "used", "0"));
+  node.sendOdometry(0.0);
+  EXPECT_TRUE(node.comesToSay("odometry", "used", "1")) << "after a reset older stamps are welcome";
+}
+
+TEST(NodeServicesTest, LiveParametersChangeTheMarkersAtOnceAndWrongOnesStayAsTheyWere) {
+  RunningNode node("live", {"_node/live/correction:=limited"});
+  std::atomic<std::size_t> labels{0};
+  const auto subscriber = node.handle().subscribe<visualization_msgs::MarkerArray>(
+      "markers/landmarks", 10,
+      boost::function<void(const visualization_msgs::MarkerArrayConstPtr&)>(
+          [&](const visualization_msgs::MarkerArrayConstPtr& message) {
+            labels = static_cast<std::size_t>(std::count_if(message->markers.begin(), message->markers.end(),
+                                                            [](const auto& marker) { return marker.ns == "labels"; }));
+          }));
+  ASSERT_TRUE(node.isReady());
+  for (int i = 0; i < 30; ++i) {
+    node.sendOdometry(0.0001 * i);
+    node.sendObjects(0.0001 * i);
+    ros::WallDuration(0.002).sleep();
+  }
+  ASSERT_TRUE(node.comesToSay("objects", "frames used", "30"));
+  ASSERT_TRUE(call<std_srvs::Trigger>(node, "finish_submap").success);
+  ASSERT_TRUE(node.comesToSay("estimator", "landmarks", "3"));
+  EXPECT_EQ(labels, 0U);
+
+  dynamic_reconfigure::Reconfigure change;
+  change.request.config.bools.resize(1);
+  change.request.config.bools[0].name = "landmark_labels";
+  change.request.config.bools[0].value = 1;
+  change.request.config.strs.resize(1);
+  change.request.config.strs[0].name = "correction";
+  change.request.config.strs[0].value = "sometimes";
+  ASSERT_TRUE(ros::service::call(node.fullName() + "/node/live/set_parameters", change));
+  EXPECT_TRUE(waitFor([&] { return labels == 3U; }));
+  ASSERT_EQ(change.response.config.strs.size(), 1U);
+  EXPECT_EQ(change.response.config.strs[0].value, "limited") << "there is no policy 'sometimes'";
+}
+
+TEST(NodeServicesTest, SetModeRefusesWhatThereIsNot) {
+  RunningNode node("mode");
+  ASSERT_TRUE(node.isReady());
+  SetMode::Request request;
+  request.mode = SetMode::Request::MAPPING;
+  EXPECT_TRUE(call<SetMode>(node, "set_mode", request).success);
+  request.mode = SetMode::Request::LOCALIZATION;
+  EXPECT_FALSE(call<SetMode>(node, "set_mode", request).success) << "without a loaded map";
+  request.mode = 7;
+  EXPECT_FALSE(call<SetMode>(node, "set_mode", request).success);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "node_faults_test");
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}

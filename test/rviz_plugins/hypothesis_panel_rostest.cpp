@@ -1,0 +1,187 @@
+#include <QApplication>
+#include <QLabel>
+#include <QPushButton>
+#include <QTableWidget>
+#include <atomic>
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <geometry_msgs/PointStamped.h>
+#include <gtest/gtest.h>
+#include <pluginlib/class_loader.hpp>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <rviz/panel.h>
+#include <std_srvs/Trigger.h>
+
+#include <semantic_mht_slam/HypothesisTree.h>
+#include <semantic_mht_slam/SemanticMap.h>
+#include <semantic_mht_slam/SetMode.h>
+
+namespace semantic_mht_slam {
+namespace {
+
+/// The panel as rviz loads it, and a node that it talks to. The test's main thread stands for rviz's.
+class HypothesisPanelTest : public ::testing::Test {
+ protected:
+  HypothesisPanelTest() : loader_("rviz", "rviz::Panel"), node_spinner_(1, &node_queue_) {
+    node_.setCallbackQueue(&node_queue_);
+    panel_.reset(loader_.createUnmanagedInstance("semantic_mht_slam/HypothesisPanel"));
+    panel_->onInitialize();
+    node_spinner_.start();
+  }
+
+  /// What rviz does with its time, until `isTrue` holds; false if it never does. Notes the longest pause.
+  template <class Predicate>
+  bool display(const Predicate& isTrue, double limit_s = 10.0) {
+    const ros::WallTime begin = ros::WallTime::now();
+    while (!isTrue()) {
+      const ros::WallTime round = ros::WallTime::now();
+      ros::spinOnce();
+      QApplication::processEvents();
+      longest_round_s_ = std::max(longest_round_s_, (ros::WallTime::now() - round).toSec());
+      if ((ros::WallTime::now() - begin).toSec() > limit_s) return false;
+      ros::WallDuration(0.01).sleep();
+    }
+    return true;
+  }
+
+  template <class Message>
+  ros::Publisher advertise(const std::string& topic) {
+    ros::Publisher publisher = node_.advertise<Message>(topic, 10, true);
+    EXPECT_TRUE(display([&] { return publisher.getNumSubscribers() > 0; })) << topic;
+    return publisher;
+  }
+
+  template <class Service>
+  ros::ServiceServer offer(
+      const std::string& name,
+      const boost::function<bool(typename Service::Request&, typename Service::Response&)>& answer) {
+    return node_.advertiseService(name, answer);
+  }
+
+  std::string textOf(const char* label) { return panel_->findChild<QLabel*>(label)->text().toStdString(); }
+  bool comesToSay(const char* label, const std::string& text) {
+    return display([&] { return textOf(label).find(text) != std::string::npos; });
+  }
+  void press(const char* button) { panel_->findChild<QPushButton*>(button)->click(); }
+
+  pluginlib::ClassLoader<rviz::Panel> loader_;
+  ros::NodeHandle node_;
+  ros::CallbackQueue node_queue_;
+  ros::AsyncSpinner node_spinner_;
+  std::unique_ptr<rviz::Panel> panel_;
+  double longest_round_s_ = 0.0;
+};
+
+TEST_F(HypothesisPanelTest, TableAndCountersShowTheNewestMessages) {
+  HypothesisTree tree;
+  tree.hypotheses.resize(2);
+  tree.hypotheses[0].weight = 0.75;
+  tree.hypotheses[0].id = 12;
+  tree.hypotheses[0].parent_id = 7;
+  tree.hypotheses[0].age = 3;
+  tree.hypotheses[0].landmarks = 41;
+  const ros::Publisher trees = advertise<HypothesisTree>("hypotheses");
+  trees.publish(tree);
+  auto* table = panel_->findChild<QTableWidget*>();
+  ASSERT_TRUE(display([&] { return table->rowCount() == 2; }));
+  const std::vector<std::string> expected = {"0.750", "12", "7", "3", "41"};
+  for (int column = 0; column < 5; ++column) {
+    EXPECT_EQ(table->item(0, column)->text().toStdString(), expected[static_cast<std::size_t>(column)]);
+  }
+  tree.hypotheses.resize(1);
+  trees.publish(tree);
+  EXPECT_TRUE(display([&] { return table->rowCount() == 1; }));
+
+  diagnostic_msgs::DiagnosticArray diagnostics;
+  diagnostics.status.resize(1);
+  diagnostics.status[0].hardware_id = "semantic_mht_slam";
+  diagnostics.status[0].values.resize(1);
+  diagnostics.status[0].values[0].key = "loops";
+  diagnostics.status[0].values[0].value = "5";
+  advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics").publish(diagnostics);
+  EXPECT_TRUE(comesToSay("counters", "loops 5"));
+}
+
+TEST_F(HypothesisPanelTest, ClickShowsTheLandmarkItsHistoryAndAlternatives) {
+  SemanticMap map;
+  map.header.frame_id = "map";
+  map.classes.resize(1);
+  map.classes[0].name = "pole";
+  map.landmarks.resize(1);
+  map.landmarks[0].id = 77;
+  map.landmarks[0].observations = 9;
+  map.landmarks[0].position.x = 20.0;
+  map.landmarks[0].components.resize(2);
+  map.landmarks[0].components[1].weight = 0.25;
+  advertise<SemanticMap>("map").publish(map);
+  EXPECT_TRUE(comesToSay("counters", "landmarks 1"));
+  const ros::Publisher clicks = advertise<geometry_msgs::PointStamped>("/clicked_point");
+  geometry_msgs::PointStamped click;
+  click.header.frame_id = "map";
+  click.point.x = 19.0;
+  clicks.publish(click);
+  EXPECT_TRUE(comesToSay("landmark", "pole 77"));
+  EXPECT_NE(textOf("landmark").find("seen 9 times"), std::string::npos);
+  EXPECT_NE(textOf("landmark").find("25 % at"), std::string::npos);
+  click.point.x = 300.0;
+  clicks.publish(click);
+  EXPECT_TRUE(comesToSay("landmark", "No landmark"));
+  click.header.frame_id = "odom";
+  clicks.publish(click);
+  EXPECT_TRUE(comesToSay("landmark", "'odom'"));
+}
+
+TEST_F(HypothesisPanelTest, ButtonsCallTheServicesShowTheAnswerAndNeverHoldTheDisplay) {
+  press("Save");
+  EXPECT_TRUE(comesToSay("status", "/save_map: no node offers this service"));
+
+  const ros::ServiceServer slow =
+      offer<std_srvs::Trigger>("finish_submap", [](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+        ros::WallDuration(2.0).sleep();
+        response.message = "nothing to finish";
+        return true;
+      });
+  ASSERT_TRUE(display([&] { return panel_->findChild<QPushButton*>("Finish submap")->isEnabled(); }));
+  longest_round_s_ = 0.0;
+  press("Finish submap");
+  EXPECT_TRUE(comesToSay("status", "waiting"));
+  EXPECT_FALSE(panel_->findChild<QPushButton*>("Reset")->isEnabled()) << "one call at a time";
+  EXPECT_TRUE(comesToSay("status", "/finish_submap refused: nothing to finish"));
+  EXPECT_LT(longest_round_s_, 1.0) << "the service took 2 s";
+
+  std::atomic<int> mode{-1};
+  const ros::ServiceServer modes =
+      offer<SetMode>("set_mode", [&](SetMode::Request& request, SetMode::Response& response) {
+        mode = request.mode;
+        response.success = true;
+        return true;
+      });
+  press("Localization");
+  EXPECT_TRUE(display([&] { return mode == SetMode::Request::LOCALIZATION; }));
+}
+
+TEST_F(HypothesisPanelTest, ResetAsksBeforeItForgetsTheMap) {
+  std::atomic<int> resets{0};
+  const ros::ServiceServer server =
+      offer<std_srvs::Trigger>("reset", [&](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+        ++resets;
+        response.success = true;
+        return true;
+      });
+  press("Reset");
+  display([] { return false; }, 0.5);
+  EXPECT_EQ(resets, 0);
+  press("Reset");
+  EXPECT_TRUE(display([&] { return resets == 1; }));
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "hypothesis_panel_rostest");
+  const QApplication application(argc, argv);
+  return RUN_ALL_TESTS();
+}
