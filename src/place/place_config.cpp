@@ -15,6 +15,8 @@ void describeChecks(PlaceConfig& config, Fields& fields) {
   fields.add("supported_score", config.supported_score, "", {0.0, 1000.0},
              "Verification score that is enough if the match of a neighbouring keyframe agrees.");
   fields.add("lone_score", config.lone_score, "", {0.0, 1000.0}, "Verification score that is enough alone.");
+  fields.add("far_factor", config.far_factor, "", {0.0, 100.0},
+             "How much more `lone_score` is at the edge of the drift gate, and without a gate.");
   fields.add("rival_ratio", config.rival_ratio, "", {0.0, 1.0},
              "A match is refused if another alignment or place has this part of its score.");
   fields.add("agree_distance", config.agree_m, "m", {0.01, 100.0},

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kMaxJudged = 4;
 constexpr std::size_t kMaxReturned = 2;
-constexpr double kRefined_m = 1.0;  // further than this no refinement takes a guess
 
 bool areDistinct(const PlanarFit& a, const PlanarFit& b, const SceneAlignmentConfig& config) {
   return (a.motion.shift_m - b.motion.shift_m).norm() > config.distinct_m ||
@@ -34,7 +33,7 @@ std::vector<PlanarGuess> guessMotions(const PlanarScene& query, const PlanarScen
 }
 
 bool isWithinReach(const PlanarScene& query, const PlanarScene& match, const PlanarFit& fit, double max_offset_m) {
-  return moved(fit.motion, query, match, Eigen::Vector2d::Zero()).norm() <= max_offset_m + kRefined_m;
+  return moved(fit.motion, query, match, Eigen::Vector2d::Zero()).norm() <= max_offset_m;
 }
 
 /// Refined guesses, the most promising first.

@@ -20,9 +20,10 @@ struct PlaceConfig {
   double min_spread_m = 2.0;
   double max_stddev_m = 1.0;
   double max_stddev_rad = 0.05;
-  double min_share = 0.3;
-  double supported_score = 5.0;
-  double lone_score = 9.0;
+  double min_share = 0.25;
+  double supported_score = 7.0;
+  double lone_score = 10.0;
+  double far_factor = 2.0;
   double rival_ratio = 0.7;
   double agree_m = 2.0;
   double agree_rad = 0.06;

@@ -22,7 +22,7 @@ enum class AlignmentSearch {
 /// Parameters of `alignScenes`.
 struct SceneAlignmentConfig {
   AlignmentSearch search = AlignmentSearch::kVotes;
-  double max_offset_m = 10.0;
+  double max_offset_m = 7.5;
   int max_guesses = 12;
   double noise_floor_m = 0.15;
   double full_residual_m = 0.35;
