@@ -30,7 +30,8 @@ PlaceRefusal judge(const SceneAlignment& alignment, double rival_score, const Pl
     return PlaceRefusal::kUncertain;
   }
   if (alignment.similarity < config.supported_score ||
-      alignment.similarity < config.min_share * alignment.soft_inliers) {
+      alignment.similarity < config.min_share * alignment.soft_inliers ||
+      alignment.log_evidence < config.min_log_evidence) {
     return PlaceRefusal::kLowScore;
   }
   if (rival_score > config.rival_ratio * alignment.similarity) return PlaceRefusal::kAmbiguous;

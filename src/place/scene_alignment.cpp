@@ -75,7 +75,7 @@ void describe(SceneAlignmentConfig& config, Fields& fields) {
   fields.add("search", config.search,
              {{"votes", Search::kVotes}, {"clique", Search::kClique}, {"ransac", Search::kRansac}},
              "First guesses: votes of object pairs, maximum clique of correspondences, or random samples (PCL).");
-  fields.add("max_offset", config.max_offset_m, "m", {0.1, 1000.0},
+  fields.add("max_offset", config.max_offset_m, "m", {0.1, 60.0},
              "Two keyframes further apart than this are not compared as one place.");
   fields.add("max_guesses", config.max_guesses, "", {1, 1000}, "Guesses of `votes` that are refined.");
   fields.add("noise_floor", config.noise_floor_m, "m", {0.001, 10.0},

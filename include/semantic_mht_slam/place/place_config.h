@@ -13,7 +13,7 @@ struct PlaceConfig {
   double gate_base_m = 15.0;
   double gate_per_driven_m = 0.04;
   int max_compared = 400;
-  int max_candidates = 8;
+  int max_candidates = 5;
   double min_descriptor_score = 0.2;
   int min_inliers = 6;
   int min_classes = 2;
@@ -21,6 +21,7 @@ struct PlaceConfig {
   double max_stddev_m = 1.0;
   double max_stddev_rad = 0.05;
   double min_share = 0.25;
+  double min_log_evidence = 5.0;
   double supported_score = 7.0;
   double lone_score = 10.0;
   double far_factor = 2.0;
