@@ -12,9 +12,13 @@ void describeChecks(PlaceConfig& config, Fields& fields) {
              "Horizontal deviation of the transform above which it is refused.");
   fields.add("max_stddev_angle", config.max_stddev_rad, "rad", {0.001, 3.2}, "The same of its heading.");
   fields.add("min_share", config.min_share, "", {0.0, 1.0}, "Least share of the smaller scene that lies on the other.");
+  fields.add("min_log_evidence", config.min_log_evidence, "nats", {-1e6, 1e6},
+             "Least logarithm of how much likelier one place is than chance, objects without counterpart included.");
   fields.add("supported_score", config.supported_score, "", {0.0, 1000.0},
              "Verification score that is enough if the match of a neighbouring keyframe agrees.");
   fields.add("lone_score", config.lone_score, "", {0.0, 1000.0}, "Verification score that is enough alone.");
+  fields.add("far_factor", config.far_factor, "", {0.0, 100.0},
+             "How much more `lone_score` is at the edge of the drift gate, and without a gate.");
   fields.add("rival_ratio", config.rival_ratio, "", {0.0, 1.0},
              "A match is refused if another alignment or place has this part of its score.");
   fields.add("agree_distance", config.agree_m, "m", {0.01, 100.0},

@@ -11,6 +11,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kDriftShare = 0.02;      // of neighbouring keyframes relative to each other
+constexpr double kNearShareOfGate = 0.5;  // further out two matches that agree are as likely two of a twin street
 constexpr double kSamePlaceBase_m = 5.0;  // two matches of one keyframe that differ less name one place
 
 double largestHorizontalStddev(const Eigen::Matrix<double, 6, 6>& cov) {
@@ -29,7 +30,8 @@ PlaceRefusal judge(const SceneAlignment& alignment, double rival_score, const Pl
     return PlaceRefusal::kUncertain;
   }
   if (alignment.similarity < config.supported_score ||
-      alignment.similarity < config.min_share * alignment.soft_inliers) {
+      alignment.similarity < config.min_share * alignment.soft_inliers ||
+      alignment.log_evidence < config.min_log_evidence) {
     return PlaceRefusal::kLowScore;
   }
   if (rival_score > config.rival_ratio * alignment.similarity) return PlaceRefusal::kAmbiguous;
@@ -182,11 +184,21 @@ PlaceMatch PlaceRecognizer::verify(const Place& query, std::size_t index) const 
 void PlaceRecognizer::refuseOutsideGate(std::vector<PlaceMatch>& matches,
                                         const std::vector<Pose>& T_map_keyframe) const {
   for (PlaceMatch& match : matches) {
-    if (!passed(match) || !config_.drift_gate) continue;
-    const Pose T_map_query = T_map_keyframe[match.match] * match.T_match_query;
-    const double distance_m = (T_map_query.translation_m - T_map_keyframe[match.query].translation_m).head<2>().norm();
-    if (distance_m > config_.gate_base_m + drift(match.query, match.match)) match.refusal = PlaceRefusal::kOutsideGate;
+    if (passed(match) && gateShare(match, T_map_keyframe) > 1.0) match.refusal = PlaceRefusal::kOutsideGate;
   }
+}
+
+double PlaceRecognizer::gateShare(const PlaceMatch& match, const std::vector<Pose>& T_map_keyframe) const {
+  if (!config_.drift_gate) return 0.0;
+  const Pose T_map_query = T_map_keyframe[match.match] * match.T_match_query;
+  const double distance_m = (T_map_query.translation_m - T_map_keyframe[match.query].translation_m).head<2>().norm();
+  return distance_m / (config_.gate_base_m + drift(match.query, match.match));
+}
+
+bool PlaceRecognizer::isEnough(const PlaceMatch& match, const std::vector<Pose>& T_map_keyframe) const {
+  const double share = gateShare(match, T_map_keyframe);
+  if (match.verification_score >= config_.lone_score * (1.0 + config_.far_factor * share * share)) return true;
+  return share < kNearShareOfGate && isSupported(match, recent_, T_map_keyframe);
 }
 
 void PlaceRecognizer::refuseRivals(std::vector<PlaceMatch>& matches, const std::vector<Pose>& T_map_keyframe) const {
@@ -246,7 +258,7 @@ std::vector<PlaceMatch> PlaceRecognizer::process(std::vector<Keyframe> keyframes
   for (std::vector<PlaceMatch>& matches : of_queries) {
     if (!matches.empty() && passed(matches.front())) {
       PlaceMatch& best = matches.front();
-      best.accepted = best.verification_score >= config_.lone_score || isSupported(best, recent_, T_map_keyframe);
+      best.accepted = isEnough(best, T_map_keyframe);
       if (!best.accepted) best.refusal = PlaceRefusal::kUnsupported;
     }
     std::move(matches.begin(), matches.end(), std::back_inserter(result));
@@ -273,7 +285,7 @@ std::vector<PlaceMatch> PlaceRecognizer::locate(const Scene& scene, const std::v
   refuseRivals(matches, T_map_keyframe);
   if (!matches.empty() && passed(matches.front())) {
     PlaceMatch& best = matches.front();
-    best.accepted = best.verification_score >= config_.lone_score;
+    best.accepted = best.verification_score >= config_.lone_score * (1.0 + config_.far_factor);
     if (!best.accepted) best.refusal = PlaceRefusal::kUnsupported;
   }
   return matches;

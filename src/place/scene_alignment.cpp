@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kMaxJudged = 4;
 constexpr std::size_t kMaxReturned = 2;
-constexpr double kRefined_m = 1.0;  // further than this no refinement takes a guess
 
 bool areDistinct(const PlanarFit& a, const PlanarFit& b, const SceneAlignmentConfig& config) {
   return (a.motion.shift_m - b.motion.shift_m).norm() > config.distinct_m ||
@@ -34,7 +33,7 @@ std::vector<PlanarGuess> guessMotions(const PlanarScene& query, const PlanarScen
 }
 
 bool isWithinReach(const PlanarScene& query, const PlanarScene& match, const PlanarFit& fit, double max_offset_m) {
-  return moved(fit.motion, query, match, Eigen::Vector2d::Zero()).norm() <= max_offset_m + kRefined_m;
+  return moved(fit.motion, query, match, Eigen::Vector2d::Zero()).norm() <= max_offset_m;
 }
 
 /// Refined guesses, the most promising first.
@@ -76,7 +75,7 @@ void describe(SceneAlignmentConfig& config, Fields& fields) {
   fields.add("search", config.search,
              {{"votes", Search::kVotes}, {"clique", Search::kClique}, {"ransac", Search::kRansac}},
              "First guesses: votes of object pairs, maximum clique of correspondences, or random samples (PCL).");
-  fields.add("max_offset", config.max_offset_m, "m", {0.1, 1000.0},
+  fields.add("max_offset", config.max_offset_m, "m", {0.1, 60.0},
              "Two keyframes further apart than this are not compared as one place.");
   fields.add("max_guesses", config.max_guesses, "", {1, 1000}, "Guesses of `votes` that are refined.");
   fields.add("noise_floor", config.noise_floor_m, "m", {0.001, 10.0},

@@ -1,9 +1,9 @@
 #include "scene_votes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
+
+#include <Eigen/Geometry>
 
 namespace semantic_mht_slam {
 namespace {
@@ -11,11 +11,10 @@ namespace {
 constexpr double kMinLength_m = 3.0;
 constexpr double kMaxLength_m = 45.0;
 constexpr double kMaxStddev_m = 0.9;  // of an object that votes: others give no heading
-constexpr std::size_t kMaxVoters = 48;
+constexpr std::size_t kMaxVoters = 44;
 constexpr double kCell_m = 1.5;
 constexpr int kYawCells = 72;
-constexpr int kHalfSide = 48;  // cells each way
-constexpr int kSide = 2 * kHalfSide;
+constexpr double kYawStep_rad = 2.0 * M_PI / kYawCells;
 
 /// A pair of objects, directed from the lower class to the higher.
 struct SegmentOfScene {
@@ -23,6 +22,7 @@ struct SegmentOfScene {
   double length_m = 0.0;
   double heading_rad = 0.0;
   double stddev_m = 0.0;
+  Eigen::Vector2d along = Eigen::Vector2d::UnitX();  // direction
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
   bool is_directed = true;  // false: both ends have one class
 };
@@ -54,8 +54,8 @@ std::vector<SegmentOfScene> segments(const PlanarScene& scene) {
       const double length_m = along_m.norm();
       if (length_m < kMinLength_m || length_m > kMaxLength_m) continue;
       result.push_back({a.class_index * kMaxClasses + b.class_index, length_m, std::atan2(along_m.y(), along_m.x()),
-                        std::sqrt(a.variance_m2 + b.variance_m2), 0.5 * (a.position_m + b.position_m) - scene.centre_m,
-                        a.class_index != b.class_index});
+                        std::sqrt(a.variance_m2 + b.variance_m2), along_m / length_m,
+                        0.5 * (a.position_m + b.position_m), a.class_index != b.class_index});
     }
   }
   std::sort(result.begin(), result.end(), [](const SegmentOfScene& a, const SegmentOfScene& b) {
@@ -66,129 +66,125 @@ std::vector<SegmentOfScene> segments(const PlanarScene& scene) {
 
 /// What one cell got.
 struct CellVotes {
-  std::int32_t key = 0;
   float weight = 0.0F;
   float x_m = 0.0F;
   float y_m = 0.0F;
   float yaw_rad = 0.0F;  // relative to the middle of the cell
 };
 
+/// A heading and where it takes the origin of the query, in the frame of the match.
+struct Motion {
+  double yaw_rad = 0.0;
+  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
+  double votes = 0.0;
+};
+
+/// Votes over heading and offset.
 class VoteSheet {
  public:
-  void add(double yaw_rad, const Eigen::Vector2d& shift_m, double weight) {
+  explicit VoteSheet(double max_offset_m)
+      : max_offset_m_(max_offset_m),
+        side_(2 * static_cast<int>(std::ceil(max_offset_m / kCell_m))),
+        cells_(static_cast<std::size_t>(kYawCells) * side_ * side_) {}
+
+  void add(double yaw_rad, const Eigen::Vector2d& offset_m, double weight) {
+    if (offset_m.squaredNorm() > max_offset_m_ * max_offset_m_) return;
     const double turn = yaw_rad / (2.0 * M_PI);
-    const double yaw_cells = (turn - std::floor(turn)) * kYawCells;
-    const int yaw_cell = std::min(kYawCells - 1, static_cast<int>(yaw_cells));
-    const int x = static_cast<int>(std::floor(shift_m.x() / kCell_m)) + kHalfSide;
-    const int y = static_cast<int>(std::floor(shift_m.y() / kCell_m)) + kHalfSide;
-    if (x < 0 || y < 0 || x >= kSide || y >= kSide) return;
-    const double yaw_rest_rad = (yaw_cells - yaw_cell - 0.5) * 2.0 * M_PI / kYawCells;
-    votes_.push_back({keyOf(yaw_cell, x, y), static_cast<float>(weight), static_cast<float>(weight * shift_m.x()),
-                      static_cast<float>(weight * shift_m.y()), static_cast<float>(weight * yaw_rest_rad)});
+    const double yaw_place = (turn - std::floor(turn)) * kYawCells;
+    const int yaw = std::min(kYawCells - 1, static_cast<int>(yaw_place));
+    const int x = std::clamp(static_cast<int>(std::floor(offset_m.x() / kCell_m)) + side_ / 2, 0, side_ - 1);
+    const int y = std::clamp(static_cast<int>(std::floor(offset_m.y() / kCell_m)) + side_ / 2, 0, side_ - 1);
+    CellVotes& cell = cells_[indexOf(yaw, x, y)];
+    cell.weight += static_cast<float>(weight);
+    cell.x_m += static_cast<float>(weight * offset_m.x());
+    cell.y_m += static_cast<float>(weight * offset_m.y());
+    cell.yaw_rad += static_cast<float>(weight * (yaw_place - yaw - 0.5) * kYawStep_rad);
   }
 
-  std::vector<PlanarGuess> peaks(int count) {
-    merge();
-    std::vector<std::size_t> order(cells_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const std::size_t kept = std::min(order.size(), static_cast<std::size_t>(6 * count));
+  std::vector<Motion> peaks(int count) const {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      if (cells_[i].weight > 0.0F) order.push_back(i);
+    }
+    const std::size_t kept = std::min(order.size(), static_cast<std::size_t>(kCellsPerPeak * count));
     std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(kept), order.end(),
                       [this](std::size_t a, std::size_t b) {
-                        return cells_[a].weight != cells_[b].weight ? cells_[a].weight > cells_[b].weight
-                                                                    : cells_[a].key < cells_[b].key;
+                        return cells_[a].weight != cells_[b].weight ? cells_[a].weight > cells_[b].weight : a < b;
                       });
     order.resize(kept);
-    std::vector<PlanarGuess> guesses;
-    for (const std::size_t i : order) guesses.push_back(around(cells_[i]));
-    std::stable_sort(guesses.begin(), guesses.end(),
-                     [](const PlanarGuess& a, const PlanarGuess& b) { return a.votes > b.votes; });
-    return distinct(guesses, count);
+    std::vector<Motion> motions;
+    for (const std::size_t i : order) motions.push_back(around(i));
+    std::stable_sort(motions.begin(), motions.end(),
+                     [](const Motion& a, const Motion& b) { return a.votes > b.votes; });
+    return distinct(motions, count);
   }
 
  private:
-  static std::int32_t keyOf(int yaw, int x, int y) { return (yaw * kSide + x) * kSide + y; }
+  static constexpr int kCellsPerPeak = 6;
 
-  void merge() {
-    std::stable_sort(votes_.begin(), votes_.end(),
-                     [](const CellVotes& a, const CellVotes& b) { return a.key < b.key; });
-    for (const CellVotes& vote : votes_) {
-      if (cells_.empty() || cells_.back().key != vote.key) {
-        cells_.push_back(vote);
-        continue;
-      }
-      CellVotes& cell = cells_.back();
-      cell.weight += vote.weight;
-      cell.x_m += vote.x_m;
-      cell.y_m += vote.y_m;
-      cell.yaw_rad += vote.yaw_rad;
-    }
-  }
+  std::size_t indexOf(int yaw, int x, int y) const { return (static_cast<std::size_t>(yaw) * side_ + x) * side_ + y; }
 
   /// Mean over a cell and its neighbours.
-  PlanarGuess around(const CellVotes& middle) const {
-    const int yaw = middle.key / (kSide * kSide);
-    const int x = middle.key / kSide % kSide;
-    const int y = middle.key % kSide;
-    PlanarGuess guess;
+  Motion around(std::size_t index) const {
+    const int yaw = static_cast<int>(index) / (side_ * side_);
+    const int x = static_cast<int>(index) / side_ % side_;
+    const int y = static_cast<int>(index) % side_;
+    Motion motion;
     double yaw_rad = 0.0;
     for (int turn = -1; turn <= 1; ++turn) {
       const int yaw_cell = (yaw + turn + kYawCells) % kYawCells;
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (x + dx < 0 || x + dx >= kSide) continue;
-        const std::int32_t first = keyOf(yaw_cell, x + dx, std::max(0, y - 1));
-        const std::int32_t last = keyOf(yaw_cell, x + dx, std::min(kSide - 1, y + 1));
-        auto cell = std::lower_bound(cells_.begin(), cells_.end(), first,
-                                     [](const CellVotes& c, std::int32_t key) { return c.key < key; });
-        for (; cell != cells_.end() && cell->key <= last; ++cell) {
-          guess.votes += cell->weight;
-          guess.shift_m += Eigen::Vector2d(cell->x_m, cell->y_m);
-          yaw_rad += cell->yaw_rad + static_cast<double>(cell->weight) * turn * 2.0 * M_PI / kYawCells;
+      for (int nx = std::max(0, x - 1); nx <= std::min(side_ - 1, x + 1); ++nx) {
+        for (int ny = std::max(0, y - 1); ny <= std::min(side_ - 1, y + 1); ++ny) {
+          const CellVotes& cell = cells_[indexOf(yaw_cell, nx, ny)];
+          const double weight = static_cast<double>(cell.weight);
+          motion.votes += weight;
+          motion.offset_m += Eigen::Vector2d(static_cast<double>(cell.x_m), static_cast<double>(cell.y_m));
+          yaw_rad += static_cast<double>(cell.yaw_rad) + weight * turn * kYawStep_rad;
         }
       }
     }
-    guess.shift_m /= guess.votes;
-    guess.yaw_rad = (yaw + 0.5) * 2.0 * M_PI / kYawCells + yaw_rad / guess.votes;
-    return guess;
+    motion.offset_m /= motion.votes;
+    motion.yaw_rad = (yaw + 0.5) * kYawStep_rad + yaw_rad / motion.votes;
+    return motion;
   }
 
-  static std::vector<PlanarGuess> distinct(const std::vector<PlanarGuess>& guesses, int count) {
-    std::vector<PlanarGuess> result;
-    for (const PlanarGuess& guess : guesses) {
-      const bool is_near = std::any_of(result.begin(), result.end(), [&](const PlanarGuess& other) {
-        return (guess.shift_m - other.shift_m).squaredNorm() < kCell_m * kCell_m &&
-               std::cos(guess.yaw_rad - other.yaw_rad) > std::cos(2.0 * M_PI / kYawCells);
+  static std::vector<Motion> distinct(const std::vector<Motion>& motions, int count) {
+    std::vector<Motion> result;
+    for (const Motion& motion : motions) {
+      const bool is_near = std::any_of(result.begin(), result.end(), [&](const Motion& other) {
+        return (motion.offset_m - other.offset_m).squaredNorm() < kCell_m * kCell_m &&
+               std::cos(motion.yaw_rad - other.yaw_rad) > std::cos(kYawStep_rad);
       });
-      if (!is_near) result.push_back(guess);
+      if (!is_near) result.push_back(motion);
       if (static_cast<int>(result.size()) == count) break;
     }
     return result;
   }
 
-  std::vector<CellVotes> votes_;
+  double max_offset_m_;
+  int side_;
   std::vector<CellVotes> cells_;
 };
 
-/// Segments of two scenes become votes.
-struct Voting {
-  Eigen::Vector2d query_centre_m;
-  Eigen::Vector2d match_centre_m;
-  double max_offset_m;
-  VoteSheet sheet;
-};
-
-void vote(const SegmentOfScene& query, const SegmentOfScene& match, double tolerance_m, Voting& voting) {
+void vote(const SegmentOfScene& query, const SegmentOfScene& match, double tolerance_m, VoteSheet& sheet) {
   const double weight = 1.0 / (0.3 + tolerance_m);
+  const double along = query.along.dot(match.along);  // of unit vectors: cosine and sine of the turn between them
+  const double across = query.along.x() * match.along.y() - query.along.y() * match.along.x();
   for (int way = 0; way < (query.is_directed ? 1 : 2); ++way) {
-    const double yaw_rad = match.heading_rad - query.heading_rad + way * M_PI;
-    const double c = std::cos(yaw_rad);
-    const double s = std::sin(yaw_rad);
     Eigen::Matrix2d rotation;
-    rotation << c, -s, s, c;
-    const Eigen::Vector2d shift_m = match.middle_m - rotation * query.middle_m;
-    const Eigen::Vector2d offset_m = voting.match_centre_m + shift_m - rotation * voting.query_centre_m;
-    if (offset_m.squaredNorm() > voting.max_offset_m * voting.max_offset_m) continue;
-    voting.sheet.add(yaw_rad, shift_m, weight);
+    rotation << along, -across, across, along;
+    if (way == 1) rotation = -rotation;
+    const Eigen::Vector2d offset_m = match.middle_m - rotation * query.middle_m;
+    sheet.add(match.heading_rad - query.heading_rad + way * M_PI, offset_m, weight);
   }
+}
+
+PlanarGuess aboutCentres(const Motion& motion, const PlanarScene& query, const PlanarScene& match) {
+  PlanarGuess guess;
+  guess.yaw_rad = motion.yaw_rad;
+  guess.shift_m = motion.offset_m + Eigen::Rotation2Dd(motion.yaw_rad) * query.centre_m - match.centre_m;
+  guess.votes = motion.votes;
+  return guess;
 }
 
 }  // namespace
@@ -197,7 +193,7 @@ std::vector<PlanarGuess> voteForMotions(const PlanarScene& query, const PlanarSc
                                         int count) {
   const std::vector<SegmentOfScene> of_query = segments(query);
   const std::vector<SegmentOfScene> of_match = segments(match);
-  Voting voting{query.centre_m, match.centre_m, max_offset_m, {}};
+  VoteSheet sheet(max_offset_m);
   std::size_t begin = 0;
   constexpr double kWidest_m = 2.0 * 1.5 * kMaxStddev_m;
   for (const SegmentOfScene& segment : of_query) {
@@ -213,10 +209,12 @@ std::vector<PlanarGuess> voteForMotions(const PlanarScene& query, const PlanarSc
         if (other.length_m > segment.length_m + kWidest_m) break;
         continue;
       }
-      if (other.length_m >= segment.length_m - tolerance_m) vote(segment, other, tolerance_m, voting);
+      if (other.length_m >= segment.length_m - tolerance_m) vote(segment, other, tolerance_m, sheet);
     }
   }
-  return voting.sheet.peaks(count);
+  std::vector<PlanarGuess> guesses;
+  for (const Motion& motion : sheet.peaks(count)) guesses.push_back(aboutCentres(motion, query, match));
+  return guesses;
 }
 
 }  // namespace semantic_mht_slam

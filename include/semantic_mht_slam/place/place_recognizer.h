@@ -100,6 +100,9 @@ class PlaceRecognizer {
   std::vector<PlaceMatch> compare(const Place& query, std::size_t query_index,
                                   const std::vector<std::size_t>& places) const;
   PlaceMatch verify(const Place& query, std::size_t match) const;
+  /// How far the pose found is from the present estimate, as a share of the gate there.
+  double gateShare(const PlaceMatch& match, const std::vector<Pose>& T_map_keyframe) const;
+  bool isEnough(const PlaceMatch& match, const std::vector<Pose>& T_map_keyframe) const;
   void refuseOutsideGate(std::vector<PlaceMatch>& matches, const std::vector<Pose>& T_map_keyframe) const;
   void refuseRivals(std::vector<PlaceMatch>& matches, const std::vector<Pose>& T_map_keyframe) const;
   bool agree(const PlaceMatch& a, const PlaceMatch& b, const std::vector<Pose>& T_map_keyframe) const;

@@ -22,8 +22,8 @@ enum class AlignmentSearch {
 /// Parameters of `alignScenes`.
 struct SceneAlignmentConfig {
   AlignmentSearch search = AlignmentSearch::kVotes;
-  double max_offset_m = 10.0;
-  int max_guesses = 12;
+  double max_offset_m = 7.5;
+  int max_guesses = 8;
   double noise_floor_m = 0.15;
   double full_residual_m = 0.35;
   double static_match_prob = 0.7;
