@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "semantic_mht_slam/common/log_math.h"
@@ -65,30 +66,69 @@ void MapBranching::restart(EarlierMap map) {
   for (std::size_t i = 0; i < map_.landmarks.size(); ++i) index_of_[map_.landmarks[i].id] = static_cast<int>(i);
 }
 
-std::vector<AlignmentHypothesis> MapBranching::align(const MapHypothesis& leaf, const AlignmentPrior& prior,
-                                                     std::optional<Eigen::Vector3d> center_m,
-                                                     std::vector<LandmarkId>& ids) const {
-  std::vector<std::pair<double, const TrackedLandmark*>> nearest;
-  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
-    const double distance_m = center_m ? (landmark->position.mean_m - *center_m).norm() : 0.0;
-    if (isSettled(*landmark) && distance_m < config_.radius_m) nearest.emplace_back(distance_m, landmark.get());
-  }
-  if (static_cast<int>(nearest.size()) < config_.min_landmarks) return {};
-  std::sort(nearest.begin(), nearest.end(), [](const auto& a, const auto& b) {
-    return std::make_pair(a.first, a.second->id) < std::make_pair(b.first, b.second->id);
-  });
-  if (center_m) nearest.resize(std::min<std::size_t>(nearest.size(), config_.max_landmarks));
-  std::vector<AlignmentPoint> points;
+std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const TrackedLandmark*>& landmarks,
+                                                     const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const {
   ids.clear();
-  for (const auto& [distance_m, landmark] : nearest) {
+  if (static_cast<int>(landmarks.size()) < config_.min_landmarks) return {};
+  std::vector<AlignmentPoint> points;
+  Eigen::AlignedBox3d box;
+  for (const TrackedLandmark* landmark : landmarks) {
     points.push_back({landmark->position.mean_m, landmark->position.cov_m2, likeliestClass(landmark->class_probs)});
     ids.push_back(landmark->id);
+    box.extend(prior.T_a_b * landmark->position.mean_m);
   }
+  const double window_m = std::min(config_.joint.max_window_m, config_.joint.window_sigmas * prior.stddev_xy_m);
+  const double turn_m = config_.joint.window_sigmas * prior.stddev_yaw_rad * config_.radius_m;
   std::vector<AlignmentPoint> earlier;
-  for (const MixtureLandmark& landmark : map_.landmarks) {
-    earlier.push_back({landmark.position.mean_m, landmark.position.cov_m2, landmark.mostLikelyClass()});
+  earlier_of_point_.clear();
+  for (std::size_t i = 0; i < map_.landmarks.size(); ++i) {
+    const MixtureLandmark& landmark = map_.landmarks[i];
+    const Eigen::Vector3d& mean_m = landmark.position.mean_m;
+    const Eigen::Vector3d gap_m = (mean_m - box.center()).cwiseAbs() - 0.5 * box.sizes();
+    if (gap_m.head<2>().maxCoeff() > window_m + turn_m) continue;
+    earlier.push_back({mean_m, landmark.position.cov_m2, landmark.mostLikelyClass()});
+    earlier_of_point_.push_back(static_cast<int>(i));
   }
   return alignJointly(points, earlier, prior, classes_, config_.joint);
+}
+
+std::vector<const TrackedLandmark*> MapBranching::nearest(const MapHypothesis& leaf,
+                                                          const Eigen::Vector3d& center_m) const {
+  std::vector<std::tuple<double, LandmarkId, const TrackedLandmark*>> near;
+  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+    const double distance_m = (landmark->position.mean_m - center_m).norm();
+    if (isSettled(*landmark) && distance_m < config_.radius_m) {
+      near.emplace_back(distance_m, landmark->id, landmark.get());
+    }
+  }
+  std::sort(near.begin(), near.end());
+  near.resize(std::min(near.size(), static_cast<std::size_t>(config_.max_landmarks)));
+  std::vector<const TrackedLandmark*> result;
+  for (const auto& [distance_m, id, landmark] : near) result.push_back(landmark);
+  return result;
+}
+
+std::vector<const TrackedLandmark*> MapBranching::mostSeen(const MapHypothesis& leaf) const {
+  std::vector<std::tuple<int, LandmarkId, const TrackedLandmark*>> seen;
+  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+    const bool is_of_submap = isSettled(*landmark) && !landmark->is_from_earlier_submap;
+    if (is_of_submap) seen.emplace_back(-landmark->observations, landmark->id, landmark.get());
+  }
+  std::sort(seen.begin(), seen.end());
+  seen.resize(std::min(seen.size(), static_cast<std::size_t>(2 * config_.max_landmarks)));
+  std::vector<const TrackedLandmark*> result;
+  for (const auto& [count, id, landmark] : seen) result.push_back(landmark);
+  return result;
+}
+
+MapBranching::Matches MapBranching::matchesOf(const AlignmentHypothesis& mode,
+                                              const std::vector<LandmarkId>& ids) const {
+  Matches matches;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const int point = mode.landmark_for_detection[i];
+    if (point >= 0) matches[ids[i]] = earlier_of_point_[static_cast<std::size_t>(point)];
+  }
+  return matches;
 }
 
 bool MapBranching::branch(const TreeInput& input, std::uint64_t& next_hypothesis_id,
@@ -99,15 +139,12 @@ bool MapBranching::branch(const TreeInput& input, std::uint64_t& next_hypothesis
   next_attempt_m_ = input.driven_m + config_.retry_m;
   const AlignmentPrior prior{Pose::identity(), map_.stddev_xy_m, map_.stddev_z_m, map_.stddev_yaw_rad};
   std::vector<LandmarkId> ids;
-  const auto modes = align(leaves.front(), prior, input.T_submap_base.translation_m, ids);
+  const auto modes = align(nearest(leaves.front(), input.T_submap_base.translation_m), prior, ids);
   if (modes.empty()) return false;
   const double excess = std::max(0.0, modes.front().log_likelihood - config_.max_log_evidence);
   const std::size_t parents = leaves.size();
   for (const AlignmentHypothesis& mode : modes) {
-    Matches matches;
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      if (mode.landmark_for_detection[i] >= 0) matches[ids[i]] = mode.landmark_for_detection[i];
-    }
+    const Matches matches = matchesOf(mode, ids);
     for (std::size_t p = 0; p < parents; ++p) {
       leaves.push_back(aligned(leaves[p], mode, matches, input));
       MapHypothesis& child = leaves.back();
@@ -256,13 +293,10 @@ std::optional<MapConclusion> MapBranching::conclude(const std::vector<MapHypothe
   alignment.weight = agreeingWeight(leaves, *best->map_offset, 0.0);
   const AlignmentPrior prior{alignment.T_earlier_submap, kFinal_m, kFinal_m, kFinal_rad};
   std::vector<LandmarkId> ids;
-  const auto modes = align(*best, prior, std::nullopt, ids);
+  const auto modes = align(mostSeen(*best), prior, ids);
   if (modes.empty()) return result;
   const PoseOffset offset = offsetOf(modes.front());
-  Matches matches;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    if (modes.front().landmark_for_detection[i] >= 0) matches[ids[i]] = modes.front().landmark_for_detection[i];
-  }
+  Matches matches = matchesOf(modes.front(), ids);
   alignment.weight = agreeingWeight(leaves, *best->map_offset, modes.front().log_likelihood);
   alignment.T_earlier_submap = modes.front().T_a_b;
   alignment.cov = modes.front().cov;

@@ -57,8 +57,11 @@ class MapBranching {
  private:
   using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap
 
-  std::vector<AlignmentHypothesis> align(const MapHypothesis& leaf, const AlignmentPrior& prior,
-                                         std::optional<Eigen::Vector3d> center_m, std::vector<LandmarkId>& ids) const;
+  std::vector<const TrackedLandmark*> nearest(const MapHypothesis& leaf, const Eigen::Vector3d& center_m) const;
+  std::vector<const TrackedLandmark*> mostSeen(const MapHypothesis& leaf) const;
+  std::vector<AlignmentHypothesis> align(const std::vector<const TrackedLandmark*>& landmarks,
+                                         const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const;
+  Matches matchesOf(const AlignmentHypothesis& mode, const std::vector<LandmarkId>& ids) const;
   MapHypothesis aligned(const MapHypothesis& leaf, const AlignmentHypothesis& mode, const Matches& matches,
                         const TreeInput& input) const;
   void matchTheRest(const MapHypothesis& leaf, const PoseOffset& offset, Matches& matches) const;
@@ -71,6 +74,7 @@ class MapBranching {
   EarlierMap map_;
   std::map<LandmarkId, int> index_of_;  ///< of the earlier landmarks
   double next_attempt_m_ = 0.0;
+  mutable std::vector<int> earlier_of_point_;  ///< of the points that were aligned last
 };
 
 }  // namespace semantic_mht_slam
