@@ -59,6 +59,7 @@ std::vector<MixtureLandmark> fuseHypotheses(const std::vector<MapHypothesis>& le
   std::map<LandmarkId, std::vector<Contribution>> contributions;
   for (const MapHypothesis& leaf : leaves) {
     for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+      if (landmark->is_expected) continue;  // not seen here
       contributions[landmark->id].push_back({std::exp(leaf.log_weight), landmark.get()});
     }
   }

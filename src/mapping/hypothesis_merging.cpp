@@ -10,10 +10,16 @@ constexpr int kComparedFrames = 5;
 constexpr double kTolerance = 0.1;  // of a landmark's standard deviation
 
 bool areEqual(const TrackedLandmark& a, const TrackedLandmark& b) {
-  if (a.id != b.id) return false;
+  if (a.id != b.id || a.earlier != b.earlier) return false;
   const Eigen::Vector3d d = a.position.mean_m - b.position.mean_m;
   const Eigen::Vector3d variance_m2 = a.position.cov_m2.diagonal();
   return (d.array().square() <= kTolerance * kTolerance * variance_m2.array()).all();
+}
+
+bool areEqual(const std::optional<PoseOffset>& a, const std::optional<PoseOffset>& b) {
+  if (!a || !b) return !a && !b;
+  const Eigen::Vector4d d = a->mean - b->mean;
+  return (d.array().square() <= kTolerance * kTolerance * a->cov.diagonal().array()).all();
 }
 
 bool haveEqualHistory(const AssociationRecord* a, const AssociationRecord* b) {
@@ -34,6 +40,7 @@ double logAdd(double a, double b) {
 }  // namespace
 
 bool areEqual(const MapHypothesis& a, const MapHypothesis& b) {
+  if (!areEqual(a.map_offset, b.map_offset)) return false;
   if (a.landmarks.size() != b.landmarks.size()) return false;
   if (!haveEqualHistory(a.history.get(), b.history.get())) return false;
   for (std::size_t j = 0; j < a.landmarks.size(); ++j) {

@@ -12,6 +12,11 @@ namespace {
 constexpr int kSettledObservations = 3;  // landmarks that may correct the pose
 constexpr double kHuberSigma = 2.0;
 
+void sortById(std::vector<TrackedLandmarkPtr>& landmarks) {
+  std::sort(landmarks.begin(), landmarks.end(),
+            [](const TrackedLandmarkPtr& a, const TrackedLandmarkPtr& b) { return a->id < b->id; });
+}
+
 }  // namespace
 
 /// A child in the making.
@@ -21,14 +26,20 @@ struct MultiHypothesisTree::Growth {
   std::vector<char> is_seen;  ///< of each landmark of the parent
   std::vector<TrackedLandmarkPtr> born;
   int false_positives = 0;
+  std::vector<std::pair<std::size_t, const Measurement*>> found;  ///< expected landmarks, and what was seen of them
 };
 
 MultiHypothesisTree::MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes)
-    : config_(config), model_(config, classes), tracking_(config, classes), class_count_(classes.size()) {
+    : config_(config),
+      model_(config, classes),
+      tracking_(config, classes),
+      branching_(config.alignment, classes),
+      class_count_(classes.size()) {
   restart({});
 }
 
-void MultiHypothesisTree::restart(std::vector<TrackedLandmarkPtr> landmarks) {
+void MultiHypothesisTree::restart(std::vector<TrackedLandmarkPtr> landmarks, EarlierMap earlier_map) {
+  branching_.restart(std::move(earlier_map));
   MapHypothesis root;
   root.id = next_hypothesis_id_++;
   root.landmarks = std::move(landmarks);
@@ -43,6 +54,7 @@ void MultiHypothesisTree::step(const TreeInput& input, Rng& rng) {
   normalizeAndSort(leaves_);
   mergeEqualHypotheses(leaves_);
   normalizeAndSort(leaves_);
+  if (branching_.branch(input, next_hypothesis_id_, leaves_)) normalizeAndSort(leaves_);
   pruneHypotheses(config_, leaves_, rng);
 }
 
@@ -72,7 +84,9 @@ PoseOffset MultiHypothesisTree::offsetAfter(const MapHypothesis& parent, const T
     if (!problem_.isLandmark(column)) continue;
     const TrackedLandmark& landmark = *parent.landmarks[static_cast<std::size_t>(column)];
     const Measurement& measurement = measurements_[static_cast<std::size_t>(i)];
-    if (landmark.observations < kSettledObservations || problem_.candidate(i, column)->is_outlier) continue;
+    if (landmark.is_expected || landmark.observations < kSettledObservations ||
+        problem_.candidate(i, column)->is_outlier)
+      continue;
     OffsetObservation observation;
     observation.lever_m = measurement.position_m - T_submap_base.translation_m;
     observation.residual_m = landmark.position.mean_m - measurement.position_m;
@@ -100,7 +114,8 @@ void MultiHypothesisTree::expand(MapHypothesis& parent, const TreeInput& input, 
 
 MapHypothesis MultiHypothesisTree::makeChild(const MapHypothesis& parent, const TreeInput& input,
                                              const AssignmentList& assignments, int choice) {
-  Growth growth{parent, std::make_shared<AssociationRecord>(), std::vector<char>(parent.landmarks.size(), 0), {}, 0};
+  Growth growth{parent, std::make_shared<AssociationRecord>(), std::vector<char>(parent.landmarks.size(), 0), {}, 0,
+                {}};
   MapHypothesis& child = growth.child;
   const bool is_corrected = config_.submap.correct_pose;
   if (is_corrected) child.offset = offsetAfter(parent, input, assignments, choice);
@@ -122,7 +137,12 @@ MapHypothesis MultiHypothesisTree::makeChild(const MapHypothesis& parent, const 
   child.log_weight +=
       model_.logAssignmentPrior(static_cast<int>(growth.born.size()), growth.false_positives, problem_.measurements);
   child.log_weight += tracking_.applyMissedDetections(child, input, growth.is_seen);
+  if (child.map_offset) {
+    branching_.follow(parent, growth.found, child);
+    child.log_weight += logExpectationEvidence(child) - logExpectationEvidence(parent);
+  }
   child.landmarks.insert(child.landmarks.end(), growth.born.begin(), growth.born.end());
+  if (!growth.found.empty()) sortById(child.landmarks);
   child.history = std::move(growth.record);
   return std::move(growth.child);
 }
@@ -139,11 +159,16 @@ void MultiHypothesisTree::assign(int measurement, int column, const MapHypothesi
     const Candidate& candidate = *problem_.candidate(measurement, column);
     child.landmarks[j] = tracking_.updated(model_, *parent.landmarks[j], seen, input, candidate);
     child.log_weight += candidate.log_likelihood;
-    landmark = parent.landmarks[j]->id;
+    if (parent.landmarks[j]->is_expected) {
+      growth.found.emplace_back(j, &seen);
+      ++child.expected_found;
+      child.expected_missed -= 1.0 - parent.landmarks[j]->miss_likelihood;
+    }
+    landmark = child.landmarks[j]->id;
     return;
   }
   child.log_weight -= model_.logMapVolume() + std::log(static_cast<double>(class_count_));
-  const int whole = splitOf(measurement, growth.is_seen);
+  const int whole = splitOf(parent, measurement, growth.is_seen);
   if (whole >= 0) {
     landmark = parent.landmarks[static_cast<std::size_t>(whole)]->id;
     ++growth.false_positives;
@@ -155,13 +180,14 @@ void MultiHypothesisTree::assign(int measurement, int column, const MapHypothesi
   }
 }
 
-int MultiHypothesisTree::splitOf(int measurement, const std::vector<char>& is_seen) const {
+int MultiHypothesisTree::splitOf(const MapHypothesis& parent, int measurement, const std::vector<char>& is_seen) const {
   const double factor = config_.association.split_distance_factor;
   int whole = -1;
   double nearest = factor * factor * model_.gateMahalanobisSq();
   if (config_.estimator == Estimator::kUkf || nearest == 0.0) return -1;
   for (const Candidate& candidate : problem_.gated[static_cast<std::size_t>(measurement)]) {
-    if (is_seen[static_cast<std::size_t>(candidate.landmark)] == 0 || candidate.mahalanobis_sq >= nearest) continue;
+    const auto j = static_cast<std::size_t>(candidate.landmark);
+    if (is_seen[j] == 0 || parent.landmarks[j]->is_expected || candidate.mahalanobis_sq >= nearest) continue;
     nearest = candidate.mahalanobis_sq;
     whole = candidate.landmark;
   }

@@ -16,7 +16,9 @@ constexpr double kMaxLogExistenceOdds = 8.0;  // evidence beyond this would take
 }  // namespace
 
 LandmarkTracking::LandmarkTracking(const MapperConfig& config, const ClassTable& classes)
-    : config_(config), log_class_count_(std::log(static_cast<double>(classes.size()))) {}
+    : config_(config),
+      rate_(config.detection, classes.size()),
+      log_class_count_(std::log(static_cast<double>(classes.size()))) {}
 
 TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, const TrackedLandmark& landmark,
                                              const Measurement& measurement, const TreeInput& input,
@@ -32,6 +34,12 @@ TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, cons
   if (update) result->position = update->posterior;
   result->class_probs = model.updatedClassProbs(landmark.class_probs, measurement.class_index);
   ++result->observations;
+  if (landmark.is_expected) {
+    result->id = measurement.id_if_new;  // as in the branches that know nothing of the earlier map
+    result->observations = 1;
+    result->first_submap = input.submap;
+    result->is_expected = false;
+  }
   result->is_from_earlier_submap = false;
   result->last_submap = input.submap;
   // A detection where the landmark is speaks for it against clutter, which would be anywhere in the volume.
@@ -57,11 +65,11 @@ TrackedLandmarkPtr LandmarkTracking::begun(const AssociationModel& model, const 
 }
 
 double LandmarkTracking::detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const {
-  const DetectionConfig& detection = config_.detection;
-  const double range_m = (landmark.position.mean_m - input.T_submap_base.translation_m).head<2>().norm();
-  if (range_m > detection.max_range_m) return kLowDetectionProb;
-  const double ratio = range_m / detection.half_range_m;
-  return std::max(kLowDetectionProb, detection.detection_prob / (1.0 + ratio * ratio * ratio * ratio));
+  const Eigen::Vector3d position_m =
+      input.T_submap_base.rotation.conjugate() * (landmark.position.mean_m - input.T_submap_base.translation_m);
+  Eigen::Index most_likely = 0;
+  landmark.class_probs.maxCoeff(&most_likely);
+  return std::max(kLowDetectionProb, rate_.prob(static_cast<ClassIndex>(most_likely), position_m));
 }
 
 double LandmarkTracking::applyMissedDetections(MapHypothesis& hypothesis, const TreeInput& input,
@@ -80,7 +88,12 @@ double LandmarkTracking::applyMissedDetections(MapHypothesis& hypothesis, const 
       auto missed = std::make_shared<TrackedLandmark>(*landmark);
       const double likelihood = applyMiss(*missed, detection_prob, switch_prob);
       const double existence = logistic(landmark->log_existence_odds);
-      log_weight += std::log1p(-existence * (1.0 - likelihood));
+      if (landmark->is_expected) {
+        hypothesis.expected_missed += landmark->miss_likelihood * (1.0 - likelihood);
+        missed->miss_likelihood *= likelihood;
+      } else {
+        log_weight += std::log1p(-existence * (1.0 - likelihood));
+      }
       landmark = std::move(missed);
       if (landmark->log_existence_odds < forget_log_odds) continue;
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "semantic_mht_slam/common/log_math.h"
 #include "semantic_mht_slam/mapping/fusion.h"
@@ -9,6 +11,7 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kCertainExistence = 0.95;  // of landmarks that tell how often what exists is detected
 constexpr double kKeyframeSpacing_m = 2.0;  // nearer ones see the same error of a centroid
 
 }  // namespace
@@ -65,6 +68,7 @@ std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_
   input.step_m = step_m;
   input.T_submap_base = T_odom_submap_.inverse() * T_odom_base;
   calibration_.add(T_odom_base, detections);
+  T_submap_base_.push_back(input.T_submap_base);
   rows_.emplace_back();
   for (const Detection& detection : detections) {
     input.measurements.push_back(makeMeasurement(detection));
@@ -81,11 +85,13 @@ void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {
   is_open_ = true;
   begin_ = stamp;
   length_m_ = 0.0;
+  T_submap_base_.clear();
   rows_.clear();
   keyframes_.clear();
   const Pose T_old_base = semantic_mht_slam::corrected(T_odom_carried_.inverse() * T_odom_base, carried_offset_);
-  tree_.restart(propagated(T_old_base.inverse()));
   T_odom_submap_ = T_odom_base;
+  const bool is_asked = config_.alignment.enabled && earlier_map_provider_;
+  tree_.restart(propagated(T_old_base.inverse()), is_asked ? earlier_map_provider_(T_odom_submap_) : EarlierMap{});
 }
 
 std::vector<TrackedLandmarkPtr> Mapper::propagated(const Pose& T_new_old) const {
@@ -111,6 +117,23 @@ void Mapper::keepKeyframe(const Pose& T_submap_base, const Detections& detection
   if (is_far) keyframes_.push_back({rows_.size() - 1, T_submap_base, detections});
 }
 
+void Mapper::learnDetectionRate(const std::vector<FusedAssociations>& associations,
+                                const std::vector<MixtureLandmark>& landmarks) {
+  std::set<std::pair<LandmarkId, std::size_t>> seen;
+  for (std::size_t k = 0; k < associations.size(); ++k) {
+    for (const LandmarkId id : associations[k].landmark_of_measurement) seen.emplace(id, k);
+  }
+  for (const MixtureLandmark& landmark : landmarks) {
+    if (landmark.existence_prob < kCertainExistence || landmark.last_submap != index_) continue;
+    const ClassIndex class_index = landmark.mostLikelyClass();
+    for (std::size_t k = 0; k < T_submap_base_.size(); ++k) {
+      const Pose& T = T_submap_base_[k];
+      const Eigen::Vector3d position_m = T.rotation.conjugate() * (landmark.position.mean_m - T.translation_m);
+      tree_.detectionRate().add(class_index, position_m, seen.count({landmark.id, k}) > 0);
+    }
+  }
+}
+
 BiasStretch Mapper::biasStretch(const std::vector<FusedAssociations>& associations) const {
   BiasStretch stretch;
   for (const Keyframe& keyframe : keyframes_) {
@@ -127,6 +150,25 @@ BiasStretch Mapper::biasStretch(const std::vector<FusedAssociations>& associatio
     }
   }
   return stretch;
+}
+
+void Mapper::joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const {
+  const std::optional<MapConclusion> conclusion = tree_.mapBranching().conclude(tree_.leaves());
+  if (!conclusion) return;
+  submap.alignment = conclusion->alignment;
+  for (const MergedLandmark& merged : conclusion->merged) {
+    const auto found = std::find_if(landmarks.begin(), landmarks.end(),
+                                    [&](const MixtureLandmark& landmark) { return landmark.id == merged.merged; });
+    if (found == landmarks.end()) continue;  // was merged into another landmark of the submap
+    const MixtureLandmark& earlier = tree_.mapBranching().landmark(merged.survivor);
+    found->id = earlier.id;
+    found->observations += earlier.observations;
+    found->first_submap = std::min(found->first_submap, earlier.first_submap);
+    found->existence_prob = std::max(found->existence_prob, earlier.existence_prob);
+    submap.merged.push_back(merged);
+  }
+  std::sort(landmarks.begin(), landmarks.end(),
+            [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
 }
 
 std::optional<Submap> Mapper::finish() {
@@ -157,7 +199,9 @@ std::optional<Submap> Mapper::finish() {
     const double horizontal_m = std::max(stddev_m[0], stddev_m[1]);
     return Eigen::Vector3d(horizontal_m, horizontal_m, stddev_m[2]).cwiseAbs2().asDiagonal();
   };
+  learnDetectionRate(fused_associations, landmarks);
   submap.merged = mergeDuplicates(config_.duplicates, fused_associations, detector_cov, landmarks);
+  joinEarlierMap(landmarks, submap);
   for (const MixtureLandmark& landmark : landmarks) {
     if (landmark.last_submap == index_) submap.landmarks.push_back(landmark);
     if (landmark.last_submap < oldest) continue;

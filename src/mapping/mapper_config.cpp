@@ -39,20 +39,6 @@ void describe(AssociationConfig& config, Fields& fields) {
       "the landmark's gate, is a second part of it; 0: never (the paper).");
 }
 
-void describe(DetectionConfig& config, Fields& fields) {
-  fields.add("missed_detections", config.missed_detections,
-             "Whether landmarks that should be seen and are not lose existence (the paper: false).");
-  fields.add("detection_prob", config.detection_prob, "", {0.01, 0.999}, "P_D close to the sensor.");
-  fields.add("half_range", config.half_range_m, "m", {1.0, 1000.0}, "Range at which P_D has fallen to half.");
-  fields.add("max_range", config.max_range_m, "m", {1.0, 1000.0}, "Landmarks beyond this are not expected to be seen.");
-  fields.add("visibility_switch_prob", config.visibility_switch_prob, "1/frame", {0.0001, 0.5},
-             "Chance that a landmark in range gets hidden, or comes out again, from one frame to the next.");
-  fields.add("birth_prob", config.birth_prob, "", {0.001, 0.999}, "Existence probability of a landmark seen once.");
-  fields.add("keep_prob", config.keep_prob, "", {0.001, 0.999}, "Landmarks below this existence do not reach the map.");
-  fields.add("forget_prob", config.forget_prob, "", {1e-6, 0.999},
-             "Landmarks below this existence are dropped from a hypothesis.");
-}
-
 void describe(TreeConfig& config, Fields& fields) {
   fields.add("max_hypotheses", config.max_hypotheses, "", {1, 10000}, "Hard cap of the hypotheses that live.");
   fields.add("max_branches", config.max_branches, "", {1, 1000}, "Children that one hypothesis may have in one frame.");
@@ -87,6 +73,7 @@ MapperConfig defaultsOf(Estimator estimator) {
   config.submap.correct_pose = false;
   config.duplicates.merge = false;
   config.bias.enabled = false;
+  config.alignment.enabled = false;
   return config;
 }
 
@@ -98,6 +85,7 @@ void describe(MapperConfig& config, Fields& fields) {
   fields.group("submap", config.submap);
   fields.group("calibration", config.calibration);
   fields.group("bias", config.bias);
+  fields.group("alignment", config.alignment);
   fields.group("duplicates", config.duplicates);
 }
 

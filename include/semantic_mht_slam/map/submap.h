@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "semantic_mht_slam/common/pose.h"
@@ -22,6 +23,16 @@ struct MergedLandmark {
   LandmarkId survivor = kNoLandmark;
 };
 
+/// Where a submap lies in the map of earlier passes, as the hypotheses over joint alignments found it.
+struct MapAlignment {
+  Pose T_earlier_submap;  ///< into the predicted frame that the earlier map was given in
+  /// Covariance of x, y, z of the submap's origin (axes of the predicted frame, m) and of its heading (rad).
+  Eigen::Matrix4d cov = Eigen::Matrix4d::Zero();
+  double weight = 0.0;  ///< summed weight of the hypotheses that agree
+  int matches = 0;      ///< landmarks that submap and earlier map have in common
+  bool is_accepted = false;
+};
+
 /// A finished stretch of the drive with what was mapped in it. Immutable.
 struct Submap {
   int index = 0;
@@ -31,6 +42,7 @@ struct Submap {
   std::vector<MixtureLandmark> landmarks;          ///< submap frame, by rising id: seen in this submap
   std::vector<DetectionAssociation> associations;  ///< of every detection in it, by frame and row
   std::vector<MergedLandmark> merged;              ///< in the order in which they were found
+  std::optional<MapAlignment> alignment;           ///< against the earlier map, if there was one and it fits
 };
 
 }  // namespace semantic_mht_slam

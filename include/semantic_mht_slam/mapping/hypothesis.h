@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "semantic_mht_slam/map/landmark.h"
@@ -42,7 +43,10 @@ struct TrackedLandmark {
   bool is_from_earlier_submap = false;  ///< case (ii): not seen in this submap so far
   int first_submap = 0;
   int last_submap = 0;
-  double updated_at_m = 0.0;  ///< distance driven in the submap when it was last seen
+  double updated_at_m = 0.0;     ///< distance driven in the submap when it was last seen
+  int earlier = -1;              ///< the landmark of the earlier map that it is; -1: none known
+  double miss_likelihood = 1.0;  ///< of all frames that did not show it though it is expected
+  bool is_expected = false;  ///< only the earlier map has it so far; its place follows the hypothesis's `map_offset`
 };
 
 using TrackedLandmarkPtr = std::shared_ptr<const TrackedLandmark>;
@@ -64,6 +68,11 @@ struct MapHypothesis {
   std::shared_ptr<const AssociationRecord> history;
   int false_positives = 0;  ///< N^0 of the paper
   PoseOffset offset;        ///< of the odometry in this submap
+  /// T_earlier_submap: origin and heading of the submap in the predicted frame of the earlier map; empty: "not here
+  /// before".
+  std::optional<PoseOffset> map_offset;
+  int expected_found = 0;        ///< expected landmarks that were seen
+  double expected_missed = 0.0;  ///< expected number of those that should have been seen by now and were not
 };
 
 }  // namespace semantic_mht_slam

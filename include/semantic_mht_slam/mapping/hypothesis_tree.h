@@ -7,6 +7,7 @@
 #include "semantic_mht_slam/mapping/association.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/landmark_tracking.h"
+#include "semantic_mht_slam/mapping/map_branching.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 
 namespace semantic_mht_slam {
@@ -16,14 +17,20 @@ class MultiHypothesisTree {
  public:
   MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes);
 
-  /// Starts again from one hypothesis.
-  void restart(std::vector<TrackedLandmarkPtr> landmarks);
+  /// Starts again from one hypothesis, in surroundings that an earlier map may show.
+  void restart(std::vector<TrackedLandmarkPtr> landmarks, EarlierMap earlier_map = {});
 
   /// Grows every leaf by its likely assignments, weighs, merges, drops and resamples.
   void step(const TreeInput& input, Rng& rng);
 
   /// The leaves; the first is the most likely one. Never empty.
   const std::vector<MapHypothesis>& leaves() const { return leaves_; }
+
+  /// What is known of the probability of detection; learns from finished submaps.
+  DetectionRate& detectionRate() { return tracking_.detectionRate(); }
+
+  /// Where the submap lies in the earlier map.
+  const MapBranching& mapBranching() const { return branching_; }
 
  private:
   void predict(MapHypothesis& hypothesis, const TreeInput& input) const;
@@ -36,11 +43,12 @@ class MultiHypothesisTree {
   MapHypothesis makeChild(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
                           int choice);
   void assign(int measurement, int column, const MapHypothesis& parent, const TreeInput& input, Growth& growth) const;
-  int splitOf(int measurement, const std::vector<char>& is_seen) const;
+  int splitOf(const MapHypothesis& parent, int measurement, const std::vector<char>& is_seen) const;
 
   MapperConfig config_;
   AssociationModel model_;
   LandmarkTracking tracking_;
+  MapBranching branching_;
   int class_count_;
   KBestSolver solver_;
   AssociationProblem problem_;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/mapping/association.h"
+#include "semantic_mht_slam/mapping/detection_rate.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 
@@ -28,8 +29,12 @@ class LandmarkTracking {
   /// P_D of a visible landmark from where the base is.
   double detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const;
 
+  /// What is known of P_D.
+  DetectionRate& detectionRate() { return rate_; }
+
  private:
   MapperConfig config_;
+  DetectionRate rate_;
   double log_class_count_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/common/random.h"
@@ -18,6 +19,9 @@ namespace semantic_mht_slam {
 class Mapper {
  public:
   Mapper(const MapperConfig& config, const ClassTable& classes);
+
+  /// Who is asked for the earlier map whenever a submap begins.
+  void setEarlierMapProvider(EarlierMapProvider provider) { earlier_map_provider_ = std::move(provider); }
 
   /// Takes one frame: detections in the base frame, odometry at their stamp. Returns the submap that was full before
   /// the frame, if the frame begins a new one.
@@ -54,6 +58,9 @@ class Mapper {
   Measurement makeMeasurement(const Detection& detection) const;
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
   void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
+  void joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const;
+  void learnDetectionRate(const std::vector<FusedAssociations>& associations,
+                          const std::vector<MixtureLandmark>& landmarks);
   BiasStretch biasStretch(const std::vector<FusedAssociations>& associations) const;
 
   MapperConfig config_;
@@ -61,6 +68,7 @@ class Mapper {
   DetectorCalibration calibration_;
   CentroidBias bias_;
   MultiHypothesisTree tree_;
+  EarlierMapProvider earlier_map_provider_;
   LandmarkId next_landmark_ = 1;
   int index_ = -1;
   bool is_open_ = false;
@@ -69,6 +77,7 @@ class Mapper {
   Pose T_odom_submap_;
   Pose T_odom_last_;
   double length_m_ = 0.0;
+  std::vector<Pose> T_submap_base_;     ///< of each frame of this submap, by the odometry
   std::vector<std::vector<int>> rows_;  ///< of the measurements of each frame of this submap
   std::vector<Keyframe> keyframes_;
   std::vector<TrackedLandmarkPtr> carried_;  ///< landmarks that go on into the next submap, old submap frame

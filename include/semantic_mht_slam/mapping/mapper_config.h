@@ -2,8 +2,10 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/mapping/centroid_bias.h"
+#include "semantic_mht_slam/mapping/detection_rate.h"
 #include "semantic_mht_slam/mapping/detector_calibration.h"
 #include "semantic_mht_slam/mapping/duplicate_merging.h"
+#include "semantic_mht_slam/mapping/earlier_map.h"
 
 namespace semantic_mht_slam {
 
@@ -37,18 +39,6 @@ struct AssociationConfig {
   double split_distance_factor = 0.4;
 };
 
-/// Detections that did not come: negative evidence.
-struct DetectionConfig {
-  bool missed_detections = true;
-  double detection_prob = 0.6;
-  double half_range_m = 35.0;
-  double max_range_m = 50.0;
-  double visibility_switch_prob = 0.03;
-  double birth_prob = 0.3;
-  double keep_prob = 0.5;
-  double forget_prob = 0.02;
-};
-
 /// The hypothesis tree (paper, section II-B).
 struct TreeConfig {
   int max_hypotheses = 30;
@@ -79,16 +69,16 @@ struct MapperConfig {
   SubmapConfig submap;
   CalibrationConfig calibration;
   BiasConfig bias;
+  MapAlignmentConfig alignment;
   DuplicateConfig duplicates;
 };
 
 /// The defaults that belong to an estimator. The baselines are those of the paper: they have neither the Dirichlet
 /// process's count prior nor what goes beyond the paper (pose correction, heavy tails, split objects, merging of
-/// duplicates, centroid bias); each of these can be switched on for them by its own key.
+/// duplicates, centroid bias, alignment with an earlier map); each of these can be switched on for them by its own key.
 MapperConfig defaultsOf(Estimator estimator);
 
 void describe(AssociationConfig& config, Fields& fields);
-void describe(DetectionConfig& config, Fields& fields);
 void describe(TreeConfig& config, Fields& fields);
 void describe(SubmapConfig& config, Fields& fields);
 void describe(MapperConfig& config, Fields& fields);

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "semantic_mht_slam/map/submap.h"
+#include "semantic_mht_slam/mapping/earlier_map.h"
+#include "semantic_mht_slam/mapping/hypothesis.h"
+#include "semantic_mht_slam/models/class_table.h"
+
+namespace semantic_mht_slam {
+
+/// Log evidence of what a hypothesis expected by the earlier map and found or missed. The share of the earlier
+/// landmarks that can be seen from this pass is not known and common to all (uniform prior): many may be hidden
+/// together, or stand in another street.
+double logExpectationEvidence(const MapHypothesis& hypothesis);
+
+/// The end of a submap's comparison with the earlier map.
+struct MapConclusion {
+  MapAlignment alignment;
+  std::vector<MergedLandmark> merged;  ///< landmarks of the submap into those of the earlier map; empty if not accepted
+};
+
+/// Branches of a submap's hypotheses over where the submap lies in the earlier map ("shifted by 3 m and 2 degrees",
+/// "not here before"). A child with an alignment holds the offset as a Gaussian, knows which of its landmarks the
+/// earlier map has, and expects the others: they are case (ii) of the association, at a place that follows the offset.
+/// When one is seen, it becomes a landmark of the submap, with the id that it would have as a new one, so that ids
+/// agree between branches; the offset learns from it.
+class MapBranching {
+ public:
+  MapBranching(const MapAlignmentConfig& config, const ClassTable& classes);
+
+  /// A submap begins.
+  void restart(EarlierMap map);
+
+  /// If it is time: aligns the landmarks of the likeliest leaf, and makes of every leaf one child for each likely
+  /// alignment beside the leaf itself, which stands for "not here before". `leaves` comes with the likeliest first;
+  /// weights are to be normalised afterwards. True if there are new leaves.
+  bool branch(const TreeInput& input, std::uint64_t& next_hypothesis_id, std::vector<MapHypothesis>& leaves);
+
+  /// The offset after detections of expected landmarks. `seen` are places in `parent.landmarks` with the measurement
+  /// (submap frame, corrected pose) that went there. Moves the expected landmarks of `child`.
+  void follow(const MapHypothesis& parent, const std::vector<std::pair<std::size_t, const Measurement*>>& seen,
+              MapHypothesis& child) const;
+
+  /// The alignment on which most weight agrees, from all landmarks of the submap; empty if no leaf has one. `leaves`
+  /// are normalised.
+  std::optional<MapConclusion> conclude(const std::vector<MapHypothesis>& leaves) const;
+
+  /// The landmark of the earlier map with an id that it has. Throws std::out_of_range for others.
+  const MixtureLandmark& landmark(LandmarkId id) const {
+    return map_.landmarks.at(static_cast<std::size_t>(index_of_.at(id)));
+  }
+
+ private:
+  using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap
+
+  std::vector<const TrackedLandmark*> nearest(const MapHypothesis& leaf, const Eigen::Vector3d& center_m) const;
+  std::vector<const TrackedLandmark*> mostSeen(const MapHypothesis& leaf) const;
+  std::vector<AlignmentHypothesis> align(const std::vector<const TrackedLandmark*>& landmarks,
+                                         const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const;
+  Matches matchesOf(const AlignmentHypothesis& mode, const std::vector<LandmarkId>& ids) const;
+  MapHypothesis aligned(const MapHypothesis& leaf, const AlignmentHypothesis& mode, const Matches& matches,
+                        const TreeInput& input) const;
+  void matchTheRest(const MapHypothesis& leaf, const PoseOffset& offset, Matches& matches) const;
+  TrackedLandmarkPtr expected(int earlier, const PoseOffset& offset, const TreeInput& input) const;
+  Gaussian3 placed(int earlier, const PoseOffset& offset) const;
+  double agreeingWeight(const std::vector<MapHypothesis>& leaves, const PoseOffset& offset, double log_evidence) const;
+
+  MapAlignmentConfig config_;
+  ClassTable classes_;
+  EarlierMap map_;
+  std::map<LandmarkId, int> index_of_;  ///< of the earlier landmarks
+  double next_attempt_m_ = 0.0;
+  mutable std::vector<int> earlier_of_point_;  ///< of the points that were aligned last
+};
+
+}  // namespace semantic_mht_slam
