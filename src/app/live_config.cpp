@@ -22,6 +22,8 @@ void describe(LiveConfig& config, Fields& fields) {
              "Standard deviations from the centre to the surface of a landmark's ellipsoid.");
   fields.add("landmark_labels", config.landmark_labels,
              "Class and id at every landmark, in yellow with the leading alternative's weight if it is undecided.");
+  fields.add("refused_closures", config.refused_closures,
+             "Loop closures that were looked at and refused are drawn as well in markers/loops.");
 }
 
 }  // namespace semantic_mht_slam

@@ -23,6 +23,7 @@ LiveConfig adopt(SlamNodeLiveConfig& requested, const LiveConfig& in_force) {
   config.landmark_min_existence_prob = requested.landmark_min_existence;
   config.landmark_sigmas = requested.landmark_sigmas;
   config.landmark_labels = requested.landmark_labels;
+  config.refused_closures = requested.refused_closures;
   return config;
 }
 

@@ -136,7 +136,7 @@ bool SlamNode::isExpectedFrame(const nav_msgs::Odometry& message) {
 
 void SlamNode::startAgain() {
   slam_ = std::make_unique<Slam>(config_.slam, classes_);
-  publisher_.startAgain();
+  publisher_.startAgain(*slam_);
   published_odometry_ = 0;
   ++estimator_.resets;
 }
@@ -176,6 +176,7 @@ void SlamNode::noteStatus() {
   estimator_.hypotheses = slam_->hypotheses().size();
   estimator_.submaps = slam_->map().submaps().size();
   estimator_.landmarks = publisher_.landmarks();
+  estimator_.loops = publisher_.loops();
   const std::lock_guard<std::mutex> lock(status_mutex_);
   noted_estimator_ = estimator_;
 }
@@ -188,7 +189,7 @@ void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
   }
   if (live_.version() != published_live_) {
     published_live_ = live_.version();
-    publisher_.publishLandmarkMarkers(live_.get());
+    publisher_.publishMapMarkers(*slam_, live_.get());
   }
 }
 

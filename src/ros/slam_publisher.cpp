@@ -5,9 +5,16 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/graph_view.h"
 #include "semantic_mht_slam/ros/markers.h"
 
 namespace semantic_mht_slam {
+namespace {
+
+constexpr double kOdometrySpacing_m = 1.0;
+constexpr std::uint32_t kClosureQueue = 1000;  // a submap may look at many
+
+}  // namespace
 
 SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, const ClassTable& classes)
     : config_(config),
@@ -16,6 +23,10 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
       trajectory_publisher_(handle.advertise<nav_msgs::Path>("trajectory", 1, true)),
       objects_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/objects", 10, true)),
       landmarks_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/landmarks", 2, true)),
+      loops_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/loops", 2, true)),
+      submaps_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/submaps", 2, true)),
+      odometry_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/odometry", 2, true)),
+      closures_publisher_(handle.advertise<LoopClosure>("loop_closures", kClosureQueue)),
       hypotheses_publisher_(handle.advertise<HypothesisTree>("hypotheses", 10)),
       map_publisher_(handle.advertise<SemanticMap>("map", 1, true)) {}
 
@@ -23,6 +34,9 @@ void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
   const StampedPose latest = *slam.latestPose();
   const Pose T_map_odom = slam.T_map_odom();
   const Pose T_odom_base = T_map_odom.inverse() * latest.T_world_base;
+  if (odometry_.empty() || (odometry_.back().translation_m - T_odom_base.translation_m).norm() > kOdometrySpacing_m) {
+    odometry_.push_back(T_odom_base);
+  }
   const Pose followed = correction_.follow(T_map_odom, T_odom_base, latest.stamp, live);
   transform_broadcaster_.sendTransform(toTransform({latest.stamp, followed}, config_.map_frame, config_.odom_frame));
   geometry_msgs::PoseWithCovarianceStamped message;
@@ -48,24 +62,35 @@ void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {
   const Stamp stamp = slam.latestFrame() ? slam.latestFrame()->stamp : 0;
   map_ = toMessage(stamp, config_.map_frame, classes_, slam.landmarks(), published_submaps_);
   map_publisher_.publish(map_);
-  publishLandmarkMarkers(live);
+  for (const LoopClosure& closure : toLoopClosures(slam, published_closures_, config_.map_frame)) {
+    closures_publisher_.publish(closure);
+    ++published_closures_;
+  }
+  loops_ = acceptedClosures(slam);
+  publishMapMarkers(slam, live);
 }
 
-void SlamPublisher::publishLandmarkMarkers(const LiveConfig& live) {
+void SlamPublisher::publishMapMarkers(const Slam& slam, const LiveConfig& live) {
   landmarks_publisher_.publish(toLandmarkMarkers(map_, classes_, live));
+  loops_publisher_.publish(toLoopMarkers(slam, live, config_.map_frame));
+  submaps_publisher_.publish(toSubmapMarkers(slam, config_.map_frame));
 }
 
 void SlamPublisher::publishTrajectory(const std::vector<StampedPose>& trajectory) {
   trajectory_publisher_.publish(toPath(trajectory, config_.map_frame));
+  odometry_publisher_.publish(toOdometryMarkers(odometry_, config_.map_frame));
 }
 
-void SlamPublisher::startAgain() {
+void SlamPublisher::startAgain(const Slam& slam) {
   correction_.reset();
   published_frame_.reset();
   published_submaps_ = 0;
+  published_closures_ = 0;
+  loops_ = 0;
+  odometry_.clear();
   map_ = toMessage(0, config_.map_frame, classes_, {}, 0);
   map_publisher_.publish(map_);
-  publishLandmarkMarkers({});
+  publishMapMarkers(slam, {});
   publishTrajectory({});
   hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, 0, {}));
 }

@@ -49,6 +49,7 @@ class HypothesisPanelTest : public ::testing::Test {
   ros::Publisher advertise(const std::string& topic) {
     ros::Publisher publisher = node_.advertise<Message>(topic, 10, true);
     EXPECT_TRUE(display([&] { return publisher.getNumSubscribers() > 0; })) << topic;
+    publishers_.push_back(publisher);  // one that goes takes what is still under way with it
     return publisher;
   }
 
@@ -69,6 +70,7 @@ class HypothesisPanelTest : public ::testing::Test {
   ros::NodeHandle node_;
   ros::CallbackQueue node_queue_;
   ros::AsyncSpinner node_spinner_;
+  std::vector<ros::Publisher> publishers_;
   std::unique_ptr<rviz::Panel> panel_;
   double longest_round_s_ = 0.0;
 };

@@ -18,6 +18,7 @@ struct LiveConfig {
   double landmark_min_existence_prob = 0.5;
   double landmark_sigmas = 2.0;
   bool landmark_labels = false;
+  bool refused_closures = false;
 };
 
 void describe(LiveConfig& config, Fields& fields);

@@ -14,7 +14,8 @@
 
 namespace semantic_mht_slam {
 
-/// What the node tells the world: tf `map -> odom`, `pose`, `hypotheses`, `map`, `trajectory` and `markers/*`. The
+/// What the node tells the world: tf `map -> odom`, `pose`, `hypotheses`, `map`, `loop_closures`, `trajectory` and
+/// `markers/*`. The
 /// caller sees to it that the estimator does not change meanwhile.
 class SlamPublisher {
  public:
@@ -28,16 +29,20 @@ class SlamPublisher {
 
   void publishMap(const Slam& slam, const LiveConfig& live);
 
-  /// The landmark markers of the newest map once more, drawn as `live` says.
-  void publishLandmarkMarkers(const LiveConfig& live);
+  /// Landmarks of the newest map, loop closures and submaps once more, drawn as `live` says.
+  void publishMapMarkers(const Slam& slam, const LiveConfig& live);
 
+  /// Also what the odometry alone says.
   void publishTrajectory(const std::vector<StampedPose>& trajectory);
 
-  /// A new map begins: empties what is latched.
-  void startAgain();
+  /// A new map begins with `slam`: empties what is latched.
+  void startAgain(const Slam& slam);
 
   /// Landmarks of the newest published map.
   std::size_t landmarks() const { return map_.landmarks.size(); }
+
+  /// Loop closures in it.
+  std::size_t loops() const { return loops_; }
 
  private:
   const NodeConfig config_;
@@ -47,11 +52,18 @@ class SlamPublisher {
   ros::Publisher trajectory_publisher_;
   ros::Publisher objects_publisher_;
   ros::Publisher landmarks_publisher_;
+  ros::Publisher loops_publisher_;
+  ros::Publisher submaps_publisher_;
+  ros::Publisher odometry_publisher_;
+  ros::Publisher closures_publisher_;
   ros::Publisher hypotheses_publisher_;
   ros::Publisher map_publisher_;
   CorrectionFollower correction_;
   std::optional<Stamp> published_frame_;
   std::size_t published_submaps_ = 0;
+  std::size_t published_closures_ = 0;
+  std::size_t loops_ = 0;
+  std::vector<Pose> odometry_;  ///< about one a metre
   SemanticMap map_;
 };
 

@@ -1,0 +1,187 @@
+#include "semantic_mht_slam/ros/graph_view.h"
+
+#include <algorithm>
+#include <set>
+
+#include "semantic_mht_slam/ros/conversions.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kOutlineMargin_m = 3.0;
+constexpr double kLift_m = 1.0;  // above the trajectory, so that both are seen
+
+std_msgs::ColorRGBA makeColor(float r, float g, float b, float a) {
+  std_msgs::ColorRGBA color;
+  color.r = r;
+  color.g = g;
+  color.b = b;
+  color.a = a;
+  return color;
+}
+
+const std_msgs::ColorRGBA kGreen = makeColor(0.2F, 0.9F, 0.3F, 1.0F);
+const std_msgs::ColorRGBA kRed = makeColor(0.9F, 0.2F, 0.2F, 0.5F);
+const std_msgs::ColorRGBA kOrange = makeColor(1.0F, 0.6F, 0.1F, 1.0F);
+const std_msgs::ColorRGBA kGrey = makeColor(0.5F, 0.5F, 0.55F, 0.6F);
+
+visualization_msgs::Marker makeLines(const std::string& name, int type, double width_m, const std::string& map_frame) {
+  visualization_msgs::Marker marker;
+  marker.header.frame_id = map_frame;
+  marker.ns = name;
+  marker.type = type;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = width_m;
+  marker.color = kGrey;
+  return marker;
+}
+
+/// Markers without points would be errors in rviz, so what was shown is deleted instead.
+visualization_msgs::MarkerArray makeArray(std::vector<visualization_msgs::Marker> markers) {
+  visualization_msgs::MarkerArray array;
+  for (visualization_msgs::Marker& marker : markers) {
+    if (marker.points.empty()) marker.action = visualization_msgs::Marker::DELETE;
+    array.markers.push_back(std::move(marker));
+  }
+  return array;
+}
+
+geometry_msgs::Point toPoint(const Eigen::Vector3d& point_m) {
+  geometry_msgs::Point point;
+  point.x = point_m.x();
+  point.y = point_m.y();
+  point.z = point_m.z();
+  return point;
+}
+
+/// Index of the finished submap that holds a stamp.
+std::size_t submapAt(const Slam& slam, Stamp stamp) {
+  const auto& submaps = slam.map().submaps();
+  const auto after = std::upper_bound(submaps.begin(), submaps.end(), stamp,
+                                      [](Stamp s, const auto& submap) { return s < submap->begin; });
+  return after == submaps.begin() ? 0 : static_cast<std::size_t>(after - submaps.begin()) - 1;
+}
+
+const MapKeyframe& keyframeOf(const Slam& slam, int index) {
+  return slam.backEnd()->keyframes().keyframes[static_cast<std::size_t>(index)];
+}
+
+LoopClosure toMessage(const Slam& slam, const LoopClosureRecord& record, const std::string& map_frame) {
+  const MapKeyframe& query = keyframeOf(slam, record.query_keyframe);
+  const MapKeyframe& match = keyframeOf(slam, record.match_keyframe);
+  LoopClosure message;
+  message.header.stamp = toRosTime(query.stamp);
+  message.header.frame_id = map_frame;
+  message.query_submap = static_cast<std::uint32_t>(submapAt(slam, query.stamp));
+  message.match_submap = static_cast<std::uint32_t>(submapAt(slam, match.stamp));
+  message.match_stamp = toRosTime(match.stamp);
+  message.accepted = record.is_accepted;
+  message.reason = record.reason;
+  message.transform.pose = toMessage(record.T_match_query);
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) {
+      message.transform.covariance[static_cast<std::size_t>(6 * row + column)] = record.cov(row, column);
+    }
+  }
+  message.histogram_divergence = -1.0;
+  message.descriptor_score = -1.0;
+  message.topology_score = -2.0;
+  message.scene_score = -1.0;
+  message.loop_prob = -1.0;
+  message.verification_score = record.score;
+  message.inliers = static_cast<std::uint32_t>(record.inliers);
+  return message;
+}
+
+/// Submaps that the newest one was compared with.
+std::set<std::size_t> comparedWithNewest(const Slam& slam) {
+  std::set<std::size_t> compared;
+  const std::size_t newest = slam.map().submaps().size() - 1;
+  for (const LoopClosureRecord& record : slam.backEnd()->closures()) {
+    if (submapAt(slam, keyframeOf(slam, record.query_keyframe).stamp) != newest) continue;
+    compared.insert(submapAt(slam, keyframeOf(slam, record.match_keyframe).stamp));
+  }
+  return compared;
+}
+
+/// Four edges around positions of a submap, along the submap's axes.
+void addOutline(const Pose& T_map_submap, const std::vector<Eigen::Vector3d>& positions_m,
+                visualization_msgs::Marker& m, const std_msgs::ColorRGBA& color) {
+  if (positions_m.empty()) return;
+  Eigen::AlignedBox3d box;
+  const Pose T_submap_map = T_map_submap.inverse();
+  for (const Eigen::Vector3d& position_m : positions_m) box.extend(T_submap_map * position_m);
+  const Eigen::Vector3d low = box.min() - Eigen::Vector3d::Constant(kOutlineMargin_m);
+  const Eigen::Vector3d high = box.max() + Eigen::Vector3d::Constant(kOutlineMargin_m);
+  const double z = box.center().z();
+  const Eigen::Vector3d corners[] = {
+      {low.x(), low.y(), z}, {high.x(), low.y(), z}, {high.x(), high.y(), z}, {low.x(), high.y(), z}};
+  for (int i = 0; i < 4; ++i) {
+    m.points.push_back(toPoint(T_map_submap * corners[i]));
+    m.points.push_back(toPoint(T_map_submap * corners[(i + 1) % 4]));
+    m.colors.insert(m.colors.end(), 2, color);
+  }
+}
+
+}  // namespace
+
+std::vector<LoopClosure> toLoopClosures(const Slam& slam, std::size_t first, const std::string& map_frame) {
+  std::vector<LoopClosure> messages;
+  if (slam.backEnd() == nullptr) return messages;
+  const auto& closures = slam.backEnd()->closures();
+  for (std::size_t i = first; i < closures.size(); ++i) messages.push_back(toMessage(slam, closures[i], map_frame));
+  return messages;
+}
+
+std::size_t acceptedClosures(const Slam& slam) {
+  if (slam.backEnd() == nullptr) return 0;
+  const auto& closures = slam.backEnd()->closures();
+  return static_cast<std::size_t>(
+      std::count_if(closures.begin(), closures.end(), [](const auto& record) { return record.is_accepted; }));
+}
+
+visualization_msgs::MarkerArray toLoopMarkers(const Slam& slam, const LiveConfig& live, const std::string& map_frame) {
+  visualization_msgs::Marker accepted = makeLines("accepted", visualization_msgs::Marker::LINE_LIST, 0.6, map_frame);
+  visualization_msgs::Marker refused = makeLines("refused", visualization_msgs::Marker::LINE_LIST, 0.3, map_frame);
+  accepted.color = kGreen;
+  refused.color = kRed;
+  if (slam.backEnd() != nullptr) {
+    const std::vector<Pose>& T_map_keyframe = slam.backEnd()->keyframes().T_map_keyframe;
+    for (const LoopClosureRecord& record : slam.backEnd()->closures()) {
+      if (!record.is_accepted && !live.refused_closures) continue;
+      visualization_msgs::Marker& marker = record.is_accepted ? accepted : refused;
+      for (const int keyframe : {record.query_keyframe, record.match_keyframe}) {
+        const Eigen::Vector3d& position_m = T_map_keyframe[static_cast<std::size_t>(keyframe)].translation_m;
+        marker.points.push_back(toPoint(position_m + Eigen::Vector3d(0.0, 0.0, kLift_m)));
+      }
+    }
+  }
+  return makeArray({accepted, refused});
+}
+
+visualization_msgs::MarkerArray toSubmapMarkers(const Slam& slam, const std::string& map_frame) {
+  visualization_msgs::Marker outlines = makeLines("submaps", visualization_msgs::Marker::LINE_LIST, 0.3, map_frame);
+  const auto& submaps = slam.map().submaps();
+  if (slam.backEnd() == nullptr || submaps.empty()) return makeArray({outlines});
+  const KeyframeMap& map = slam.backEnd()->keyframes();
+  std::vector<std::vector<Eigen::Vector3d>> positions_m(submaps.size());
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    positions_m[submapAt(slam, map.keyframes[k].stamp)].push_back(map.T_map_keyframe[k].translation_m);
+  }
+  const std::set<std::size_t> compared = comparedWithNewest(slam);
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    addOutline(slam.backEnd()->T_map_submap(static_cast<int>(i)), positions_m[i], outlines,
+               compared.count(i) > 0 ? kOrange : kGrey);
+  }
+  return makeArray({outlines});
+}
+
+visualization_msgs::MarkerArray toOdometryMarkers(const std::vector<Pose>& T_odom_base, const std::string& map_frame) {
+  visualization_msgs::Marker line = makeLines("odometry", visualization_msgs::Marker::LINE_STRIP, 0.5, map_frame);
+  line.color = makeColor(0.85F, 0.35F, 0.75F, 0.8F);
+  if (T_odom_base.size() < 2) return makeArray({line});
+  for (const Pose& pose : T_odom_base) line.points.push_back(toPoint(pose.translation_m));
+  return makeArray({line});
+}
+
+}  // namespace semantic_mht_slam
