@@ -39,7 +39,8 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
       ++frame;
     }
     result.step_ms.push_back(millisecondsSince(step_begin));
-    if (result.online_trajectory.size() < slam.counters().odometry) result.online_trajectory.push_back(*slam.latestPose());
+    if (result.online_trajectory.size() < slam.counters().odometry)
+      result.online_trajectory.push_back(*slam.latestPose());
     result.hypotheses.push_back(static_cast<int>(slam.hypotheses().size()));
     progress(i + 1, recording.odometry.size());
   }

@@ -75,15 +75,14 @@ std::string formatLoopClosures(const std::vector<LoopClosureResult>& closures) {
             "," + formatFixed(record.score, 4) + "," + std::to_string(record.inliers);
     for (int i = 0; i < 3; ++i) text += "," + formatFixed(record.T_match_query.translation_m[i], 4);
     for (const double q : record.T_match_query.rotation.coeffs()) text += "," + formatFixed(q, 8);
-    text += std::string(",") + (record.source == ClosureSource::kPlace ? "place" : "revisit") + "," + record.reason + "\n";
+    text += "," + nameOf(record.source) + "," + record.reason + "\n";
   }
   return text;
 }
 
 std::size_t acceptedClosures(const std::vector<LoopClosureResult>& closures) {
-  return static_cast<std::size_t>(std::count_if(closures.begin(), closures.end(), [](const LoopClosureResult& closure) {
-    return closure.record.is_accepted;
-  }));
+  return static_cast<std::size_t>(std::count_if(
+      closures.begin(), closures.end(), [](const LoopClosureResult& closure) { return closure.record.is_accepted; }));
 }
 
 double peakRssMb() {

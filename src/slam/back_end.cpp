@@ -4,6 +4,20 @@
 #include <utility>
 
 namespace semantic_mht_slam {
+namespace {
+
+/// Covariance of a step on the right of T_a_b from that of the position and heading of b in the axes of a.
+PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_a_b, double tilt_stddev_rad) {
+  const Eigen::Matrix3d R_b_a = T_a_b.rotation.toRotationMatrix().transpose();
+  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
+  J.topLeftCorner<3, 3>() = R_b_a;
+  J.block<3, 1>(3, 3) = R_b_a.col(2);
+  PoseCov result = J * cov * J.transpose();
+  result.diagonal().tail<3>().array() += tilt_stddev_rad * tilt_stddev_rad;
+  return 0.5 * (result + result.transpose());
+}
+
+}  // namespace
 
 void describe(BackEndConfig& config, Fields& fields) {
   fields.add("close_loops", config.close_loops, "Whether places that are seen again correct the trajectory.");
@@ -25,8 +39,9 @@ void describe(BackEndConfig& config, Fields& fields) {
 BackEnd::BackEnd(const BackEndConfig& config, const ClassTable& classes)
     : config_(config), classes_(classes), graph_(config.graph), places_(config.place, classes) {}
 
-std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes,
-                                         const std::vector<MergedLandmark>& merged) {
+std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes, const std::vector<MergedLandmark>& merged,
+                                         const std::optional<MapAlignment>& alignment,
+                                         const SubmapPrediction& prediction) {
   newly_merged_.clear();
   const std::size_t first_new = map_.keyframes.size();
   first_keyframe_of_submap_.push_back(static_cast<int>(first_new));
@@ -38,8 +53,11 @@ std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes,
   for (const auto& [gone, survivor] : merged) mergeLandmarks(gone, survivor);
   graph_.optimize();
   readBack();
-  if (config_.close_loops && config_.recognise_places) recognisePlaces(first_new);
-  if (config_.close_loops && config_.revisit.enabled) findRevisitsOf(first_new);
+  if (config_.close_loops && !keyframes.empty()) {
+    if (alignment) closeByHypotheses(first_new, *alignment, prediction);
+    if (config_.recognise_places) recognisePlaces(first_new);
+    if (config_.revisit.enabled) findRevisitsOf(first_new);
+  }
   return std::exchange(newly_merged_, {});
 }
 
@@ -97,6 +115,42 @@ void BackEnd::recognisePlaces(std::size_t first_new) {
     records.push_back(std::move(record));
   }
   close(std::move(records));
+}
+
+SubmapPrediction BackEnd::predict(const Pose& T_odom_submap) const {
+  const Pose T_odom_keyframe = map_.keyframes.empty() ? T_odom_submap : map_.keyframes.back().T_odom_base;
+  const double ahead_m = (T_odom_submap.translation_m - T_odom_keyframe.translation_m).norm();
+  SubmapPrediction prediction;
+  prediction.driven_m = map_.keyframes.empty() ? 0.0 : map_.keyframes.back().driven_m;
+  const double drifted_m = std::max(0.0, prediction.driven_m + ahead_m - closed_at_m_);
+  prediction.prior = driftPrior(T_map_odom() * T_odom_submap, drifted_m, config_.revisit);
+  prediction.T_map_keyframe = map_.T_map_keyframe;
+  return prediction;
+}
+
+void BackEnd::closeByHypotheses(std::size_t first_new, const MapAlignment& alignment,
+                                const SubmapPrediction& prediction) {
+  const Pose T_map_submap = prediction.prior.T_a_b * alignment.T_earlier_submap;
+  std::optional<std::size_t> nearest;
+  const auto distance = [&](std::size_t k) {
+    return (prediction.T_map_keyframe[k].translation_m - T_map_submap.translation_m).norm();
+  };
+  for (std::size_t k = 0; k < prediction.T_map_keyframe.size(); ++k) {
+    if (map_.keyframes[first_new].driven_m - map_.keyframes[k].driven_m < config_.revisit.min_driven_m) break;
+    if (!nearest || distance(k) < distance(*nearest)) nearest = k;
+  }
+  if (!nearest) return;
+  LoopClosureRecord record;
+  record.source = ClosureSource::kHypotheses;
+  record.query_keyframe = static_cast<int>(first_new);
+  record.match_keyframe = static_cast<int>(*nearest);
+  record.is_accepted = alignment.is_accepted;
+  if (!alignment.is_accepted) record.reason = "the hypotheses do not agree";
+  record.score = alignment.weight;
+  record.inliers = alignment.matches;
+  record.T_match_query = prediction.T_map_keyframe[*nearest].inverse() * T_map_submap;
+  record.cov = stepCov(alignment.cov, alignment.T_earlier_submap, config_.revisit.alignment.tilt_stddev_rad);
+  close({std::move(record)});
 }
 
 void BackEnd::findRevisitsOf(std::size_t first_new) {
@@ -162,14 +216,17 @@ bool BackEnd::mergeLandmarks(LandmarkId merged, LandmarkId survivor) {
   return true;
 }
 
-void BackEnd::readBack() { map_.T_map_keyframe = graph_.poses(); }
+void BackEnd::readBack() {
+  map_.T_map_keyframe = graph_.poses();
+}
 
 void BackEnd::finish() {
   if (graph_.submaps() == 0) return;
   graph_.optimizeFully();
   readBack();
   for (const LoopDecision& decision : graph_.loopDecisions()) {
-    LoopClosureRecord& record = closures_[static_cast<std::size_t>(closure_of_loop_[static_cast<std::size_t>(decision.loop)])];
+    LoopClosureRecord& record =
+        closures_[static_cast<std::size_t>(closure_of_loop_[static_cast<std::size_t>(decision.loop)])];
     if (decision.state == LoopState::kAccepted) continue;
     record.is_accepted = false;
     record.reason = "refused by the pose graph";

@@ -105,7 +105,8 @@ JointAlignmentConfig RevisitConfig::wideTilt() {
 }
 
 void describe(RevisitConfig& config, Fields& fields) {
-  fields.add("enabled", config.enabled, "Whether the surroundings are laid onto the earlier map near the present pose.");
+  fields.add("enabled", config.enabled,
+             "Whether the surroundings are laid onto the earlier map near the present pose.");
   fields.add("min_driven", config.min_driven_m, "m", {1.0, 1e6}, "The earlier map is what was seen this far back.");
   fields.add("range", config.range_m, "m", {1.0, 1000.0}, "Keyframes within half of this, and the drift, are used.");
   fields.add("base_stddev", config.base_stddev_m, "m", {0.01, 100.0}, "Deviation of the prior right after a closure,");
@@ -124,14 +125,19 @@ void describe(RevisitConfig& config, Fields& fields) {
   fields.group("alignment", config.alignment);
 }
 
-std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
-                                             const ClassTable& classes, const RevisitConfig& config) {
-  const auto q = static_cast<std::size_t>(query);
+AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config) {
   AlignmentPrior prior;
-  prior.T_a_b = map.T_map_keyframe[q];
+  prior.T_a_b = T_map_base;
   prior.stddev_xy_m = std::min(config.max_stddev_m, config.base_stddev_m + config.drift_per_m * drifted_m);
   prior.stddev_z_m = std::max(0.5, 0.5 * prior.stddev_xy_m);
   prior.stddev_yaw_rad = config.base_stddev_rad + config.drift_rad_per_sqrt_m * std::sqrt(drifted_m);
+  return prior;
+}
+
+std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
+                                            const ClassTable& classes, const RevisitConfig& config) {
+  const auto q = static_cast<std::size_t>(query);
+  const AlignmentPrior prior = driftPrior(map.T_map_keyframe[q], drifted_m, config);
   std::vector<AlignmentPoint> seen;
   const Scene& scene = map.keyframes[q].scene;
   for (const SceneObject& object : scene.objects) {
@@ -148,14 +154,14 @@ std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, d
     record.query_keyframe = query;
     const RefinedPose pose = refined(best, seen, pass, config);
     record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
-    record.T_match_query =
-        map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
+    record.T_match_query = map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
     record.cov = pose.cov;
     record.score = best.log_likelihood;
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const int j = best.landmark_for_detection[i];
       if (j < 0) continue;
-      const Eigen::Vector3d apart_m = pose.T_a_b * seen[i].position_m - pass.points[static_cast<std::size_t>(j)].position_m;
+      const Eigen::Vector3d apart_m =
+          pose.T_a_b * seen[i].position_m - pass.points[static_cast<std::size_t>(j)].position_m;
       if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
       ++record.inliers;
       record.pairs.push_back({scene.objects[i].landmark, pass.ids[static_cast<std::size_t>(j)]});

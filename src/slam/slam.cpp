@@ -12,6 +12,8 @@ namespace {
 const std::vector<std::pair<std::string, Method>> kMethods = {
     {"odometry", Method::kOdometry}, {"ukf", Method::kUkf}, {"mhm", Method::kMhm}, {"dpmhm", Method::kDpmhm}};
 
+constexpr double kSensorReach_m = 60.0;
+
 }  // namespace
 
 std::string nameOf(Method method) {
@@ -47,6 +49,8 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
   if (config.method == Method::kOdometry) return;
   mapper_.emplace(config.mapper, classes);
   back_end_.emplace(config.back_end, classes);
+  earlier_after_submaps_ = static_cast<int>(config.back_end.revisit.min_driven_m / config.mapper.submap.length_m) + 1;
+  mapper_->setEarlierMapProvider([this](const Pose& T_odom_submap) { return earlierMap(T_odom_submap); });
 }
 
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
@@ -83,9 +87,30 @@ void Slam::take(Submap submap) {
   const DetectionCov cov = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
   auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, cov, keyframe_config_);
   submap_frames_.clear();
-  const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap.merged);
+  const std::vector<MergedLandmark> merged =
+      back_end_->add(std::move(keyframes), submap.merged, submap.alignment, prediction_);
+  prediction_ = std::move(next_prediction_);
   map_.add(std::make_shared<const Submap>(std::move(submap)));
   for (const auto& [gone, survivor] : merged) map_.merge(gone, survivor);
+}
+
+EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {
+  next_prediction_ = back_end_->predict(T_odom_submap);
+  const AlignmentPrior& prior = next_prediction_.prior;
+  EarlierMap earlier;
+  earlier.stddev_xy_m = prior.stddev_xy_m;
+  earlier.stddev_z_m = prior.stddev_z_m;
+  earlier.stddev_yaw_rad = prior.stddev_yaw_rad;
+  const Pose T_submap_map = prior.T_a_b.inverse();
+  const double radius_m = kSensorReach_m + 3.0 * prior.stddev_xy_m;
+  const int newest = static_cast<int>(map_.submaps().size()) - earlier_after_submaps_;
+  for (const MixtureLandmark& landmark : landmarks()) {
+    if (landmark.last_submap > newest) continue;
+    if ((landmark.position.mean_m - prior.T_a_b.translation_m).head<2>().norm() > radius_m) continue;
+    earlier.landmarks.push_back(transformed(T_submap_map, landmark));
+  }
+  if (map_.submaps().empty()) prediction_ = next_prediction_;
+  return earlier;
 }
 
 void Slam::finish() {
@@ -130,7 +155,8 @@ std::vector<CorrectionAnchor> Slam::correctionAnchors() const {
 
 std::vector<MixtureLandmark> Slam::landmarks() const {
   std::vector<MixtureLandmark> landmarks = map_.landmarks([this](int submap) {
-    return back_end_ ? back_end_->T_map_submap(submap) : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
+    return back_end_ ? back_end_->T_map_submap(submap)
+                     : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
   });
   if (!back_end_) return landmarks;
   for (MixtureLandmark& landmark : landmarks) {

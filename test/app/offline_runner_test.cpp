@@ -18,7 +18,7 @@ namespace semantic_mht_slam {
 namespace {
 
 RunResult run(const Recording& recording, const ClassTable& classes = makeTwoClasses()) {
-  return runOffline(recording, SlamConfig{}, classes, [](std::size_t, std::size_t) {});
+  return runOffline(recording, defaultsOf(Method::kOdometry), classes, [](std::size_t, std::size_t) {});
 }
 
 TEST(OfflineRunnerTest, EveryFrameAndDetectionGoesThroughOnce) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -31,14 +32,26 @@ struct BackEndConfig {
 
 void describe(BackEndConfig& config, Fields& fields);
 
+/// Where a submap that begins is believed to be, and where the earlier map was believed to be at that time.
+struct SubmapPrediction {
+  AlignmentPrior prior;  ///< of T_map_submap
+  std::vector<Pose> T_map_keyframe;
+  double driven_m = 0.0;  ///< up to the newest keyframe
+};
+
 /// Ties finished submaps together: keyframes and landmarks go into the pose graph, places that are seen again become
 /// loop closures, and landmarks that turn out to be the same become one.
 class BackEnd {
  public:
   BackEnd(const BackEndConfig& config, const ClassTable& classes);
 
-  /// Takes the keyframes of a finished submap and optimises. Returns the landmarks that were found to be the same.
-  std::vector<MergedLandmark> add(std::vector<MapKeyframe> keyframes, const std::vector<MergedLandmark>& merged);
+  /// For a submap that begins at `T_odom_submap`.
+  SubmapPrediction predict(const Pose& T_odom_submap) const;
+
+  /// Takes the keyframes of a finished submap and optimises; `alignment` is against the earlier map in the predicted
+  /// frame. Returns the landmarks that were found to be the same.
+  std::vector<MergedLandmark> add(std::vector<MapKeyframe> keyframes, const std::vector<MergedLandmark>& merged,
+                                  const std::optional<MapAlignment>& alignment, const SubmapPrediction& prediction);
 
   /// Solves the whole graph.
   void finish();
@@ -61,6 +74,7 @@ class BackEnd {
  private:
   void addNode(const MapKeyframe& keyframe);
   void recognisePlaces(std::size_t first_new);
+  void closeByHypotheses(std::size_t first_new, const MapAlignment& alignment, const SubmapPrediction& prediction);
   void findRevisitsOf(std::size_t first_new);
   void close(std::vector<LoopClosureRecord> records);
   void accept(const LoopClosureRecord& record);

@@ -43,10 +43,10 @@ struct MapKeyframe {
 /// Noise of a detection's centroid, base frame, m^2.
 using DetectionCov = std::function<Eigen::Matrix3d(const Detection&)>;
 
-/// Cuts a submap into keyframes. `frames` are those of the submap in their order; `driven_m` was driven before the first
-/// of them. Every landmark of the submap with at least `keep_prob` of existence gets one sighting a keyframe that sees it:
-/// the information-weighted mean of its detections, carried to the keyframe by odometry, with a floor for errors that
-/// they share.
+/// Cuts a submap into keyframes. `frames` are those of the submap in their order; `driven_m` was driven before the
+/// first of them. Every landmark of the submap with at least `keep_prob` of existence gets one sighting a keyframe that
+/// sees it: the information-weighted mean of its detections, carried to the keyframe by odometry, with a floor for
+/// errors that they share.
 std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m,
                                           double keep_prob, const DetectionCov& cov, const KeyframeConfig& config);
 

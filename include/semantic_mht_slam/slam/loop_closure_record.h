@@ -13,9 +13,13 @@ namespace semantic_mht_slam {
 
 /// How a revisit was found.
 enum class ClosureSource {
-  kPlace,   ///< recognised by its objects alone
-  kRevisit  ///< laid onto the earlier map near the present pose
+  kPlace,       ///< recognised by its objects alone
+  kHypotheses,  ///< agreed on by the hypotheses of a submap
+  kRevisit      ///< laid onto the earlier map near the present pose
 };
+
+/// Name for files: `place`, `hypotheses` or `revisit`.
+std::string nameOf(ClosureSource source);
 
 /// A place that was recognised, or a candidate that was refused.
 struct LoopClosureRecord {
@@ -27,7 +31,7 @@ struct LoopClosureRecord {
   double score = 0.0;  ///< of the check that decided
   int inliers = 0;     ///< landmark pairs that agree
   Pose T_match_query;
-  PoseCov cov = PoseCov::Identity();  ///< of T_match_query
+  PoseCov cov = PoseCov::Identity();                     ///< of T_match_query
   std::vector<std::pair<LandmarkId, LandmarkId>> pairs;  ///< landmark of the query, the same landmark before
 };
 

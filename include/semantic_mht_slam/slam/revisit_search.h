@@ -36,8 +36,12 @@ struct KeyframeMap {
   std::vector<Pose> T_map_keyframe;
 };
 
-/// Lays what a keyframe sees onto what each earlier pass, at least `min_driven_m` before, saw near there, all at once, with
-/// the drift since the last closure as prior (see `alignJointly`). One record for each pass that it might fit.
+/// How far the pose may be off from the earlier map after `drifted_m` of driving since it was last tied to it; in the
+/// frame of `T_map_base`.
+AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config);
+
+/// Lays what a keyframe sees onto what each earlier pass, at least `min_driven_m` before, saw near there, all at once,
+/// with the drift since the last closure as prior (see `alignJointly`). One record for each pass that it might fit.
 /// `drifted_m` was driven since the pose was last tied to the earlier map.
 std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
                                             const ClassTable& classes, const RevisitConfig& config);

@@ -45,6 +45,8 @@ void describe(SlamConfig& config, Fields& fields);
 class Slam {
  public:
   Slam(const SlamConfig& config, const ClassTable& classes);
+  Slam(const Slam&) = delete;
+  Slam& operator=(const Slam&) = delete;
 
   /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used.
   bool addOdometry(const StampedPose& T_odom_base);
@@ -87,17 +89,21 @@ class Slam {
  private:
   void processReadyFrames();
   void take(Submap submap);
+  EarlierMap earlierMap(const Pose& T_odom_submap);
   std::vector<CorrectionAnchor> correctionAnchors() const;
 
   FrameAssembler assembler_;
   Rng rng_;
   std::optional<Mapper> mapper_;
   std::optional<BackEnd> back_end_;
+  SubmapPrediction prediction_;       ///< of the open submap
+  SubmapPrediction next_prediction_;  ///< of the submap that begins while the one before is being finished
   std::vector<Frame> submap_frames_;  ///< of the submap that is open
   double driven_m_ = 0.0;             ///< up to the newest frame
   double submap_driven_m_ = 0.0;      ///< up to the first frame of the open submap
   KeyframeConfig keyframe_config_;
   double keep_prob_;
+  int earlier_after_submaps_ = 0;  ///< what was not seen in so many submaps is of an earlier pass
   SubmapArchive map_;
   std::vector<StampedPose> odometry_;
   std::optional<Frame> latest_frame_;

@@ -22,8 +22,8 @@ class SubmapArchive {
 
   const std::vector<std::shared_ptr<const Submap>>& submaps() const { return submaps_; }
 
-  /// The landmarks of the map by rising id, each as the submap that saw it last has it; `T_map_submap` gives the pose of
-  /// a submap by its index.
+  /// The landmarks of the map by rising id, each as the submap that saw it last has it; `T_map_submap` gives the pose
+  /// of a submap by its index.
   std::vector<MixtureLandmark> landmarks(const std::function<Pose(int)>& T_map_submap) const;
 
   /// The landmark that an id stands for now: itself, or the one that it was merged into.
