@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kQuietGap = 24.0;      // four times the expected distance squared of a right loop closure: can wait
 constexpr double kBendRadius_m = 10.0;  // a bend by 1 rad counts like 10 m
-constexpr double kWorthRepairing_m = 0.02;
+constexpr double kWorthRepairing_m = 2e-3;
 constexpr double kSwitchOffFactor = 3.0;  // of the gate
 constexpr int kRepairMargin = 2;          // submaps on either side of a bent piece that are optimised with it
 

@@ -7,16 +7,14 @@
 #include <ceres/solver.h>
 #include <ceres/types.h>
 
+#include "lent_problem.h"
+
 namespace semantic_mht_slam {
 namespace {
 
 ceres::Problem::Options problemOptions() {
-  ceres::Problem::Options options;
-  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  keepManifoldOwnership(options);
+  ceres::Problem::Options options = lentProblemOptions();
   options.enable_fast_removal = true;
-  options.disable_all_safety_checks = true;
   return options;
 }
 

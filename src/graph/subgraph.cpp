@@ -7,17 +7,10 @@
 #include <ceres/crs_matrix.h>
 #include <ceres/solver.h>
 
+#include "lent_problem.h"
+
 namespace semantic_mht_slam {
 namespace {
-
-ceres::Problem::Options problemOptions() {
-  ceres::Problem::Options options;
-  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  keepManifoldOwnership(options);
-  options.disable_all_safety_checks = true;
-  return options;
-}
 
 /// What sightings from held submaps say about a landmark: in its position they are linear, so that any number of them
 /// is one Gaussian. The weight of each under the robust loss is that at the present estimate.
@@ -68,7 +61,7 @@ Subgraph::Subgraph(GraphState& graph, std::vector<int> submaps, Surroundings sur
       landmark_scale_(config.landmark_cauchy_scale),
       loop_loss_(config.loop_cauchy_scale),
       landmark_loss_(config.landmark_cauchy_scale),
-      problem_(problemOptions()) {
+      problem_(lentProblemOptions()) {
   for (const int submap : submaps_) addPose(submap);
   for (const int submap : submaps_) addSubmapFactors(submap);
   for (const int submap : submaps_) {

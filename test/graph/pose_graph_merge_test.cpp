@@ -109,7 +109,7 @@ TEST_P(MergedLandmarksTest, NumberThatWasGivenUpMeansTheSurvivorInLaterSubmaps) 
   EXPECT_LT(largestDistance(one.graph, two), 0.05);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, MergedLandmarksTest, testing::Range<std::uint64_t>(41, 45));
+INSTANTIATE_TEST_SUITE_P(Seeds, MergedLandmarksTest, testing::Values(41, 42));
 
 /// Straight out, back beside the way out; eight landmarks at the start, seen from the first two and the last two
 /// submaps.
