@@ -27,10 +27,18 @@ double quantileOf(const std::vector<double>& sorted, double quantile) {
   return sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
+double meanOf(std::vector<double>::const_iterator begin, std::vector<double>::const_iterator end) {
+  return begin == end ? 0.0 : std::accumulate(begin, end, 0.0) / static_cast<double>(end - begin);
+}
+
 Json summarizeTimes(std::vector<double> step_ms) {
+  const auto quarter = static_cast<std::ptrdiff_t>(step_ms.size() / 4);
+  const double first_quarter_mean = meanOf(step_ms.cbegin(), step_ms.cbegin() + quarter);
+  const double last_quarter_mean = meanOf(step_ms.cend() - quarter, step_ms.cend());
   std::sort(step_ms.begin(), step_ms.end());
-  const double sum = std::accumulate(step_ms.begin(), step_ms.end(), 0.0);
-  return {{"mean", sum / static_cast<double>(step_ms.size())},
+  return {{"mean", meanOf(step_ms.cbegin(), step_ms.cend())},
+          {"first_quarter_mean", first_quarter_mean},
+          {"last_quarter_mean", last_quarter_mean},
           {"p50", quantileOf(step_ms, 0.5)},
           {"p95", quantileOf(step_ms, 0.95)},
           {"p99", quantileOf(step_ms, 0.99)},

@@ -71,7 +71,10 @@ void MultiHypothesisTree::measureFrom(const Pose& T_submap_base, const PoseOffse
     const Eigen::Vector3d lever_m = R * measurement.position_m;
     measurement.position_m = lever_m + T_submap_base.translation_m;
     measurement.cov_m2 = R * measurement.cov_m2 * R.transpose();
-    if (offset != nullptr) measurement.cov_m2 += pointCov(*offset, lever_m);
+    measurement.R_submap_base = T_submap_base.rotation;
+    if (offset == nullptr) continue;
+    measurement.pose_cov_m2 = pointCov(*offset, lever_m);
+    measurement.cov_m2 += measurement.pose_cov_m2;
   }
 }
 

@@ -11,6 +11,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kLowDetectionProb = 0.01;    // below this nothing is expected
+constexpr double kMinRange_m = 0.5;           // nearer detections have no direction
 constexpr double kMaxLogExistenceOdds = 8.0;  // evidence beyond this would take too many misses to undo
 
 }  // namespace
@@ -20,6 +21,27 @@ LandmarkTracking::LandmarkTracking(const MapperConfig& config, const ClassTable&
       rate_(config.detection, classes.size()),
       log_class_count_(std::log(static_cast<double>(classes.size()))) {}
 
+std::optional<FilterUpdate> LandmarkTracking::filtered(const Gaussian3& predicted, const Measurement& measurement,
+                                                       bool is_outlier) const {
+  const double range_m = measurement.ray_m.norm();
+  if (config_.measurement_model == MeasurementModel::kAdditive || range_m < kMinRange_m) {
+    PositionMeasurement position{measurement.position_m, measurement.cov_m2};
+    if (is_outlier) position.cov_m2.diagonal() += measurement.outlier_variance_m2;
+    return unscentedUpdate(predicted, position);
+  }
+  const Eigen::Vector3d outlier_m2 = is_outlier ? measurement.outlier_variance_m2 : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d stddev_m = (measurement.noise_stddev_m.cwiseAbs2() + outlier_m2).cwiseSqrt();
+  RangeBearingMeasurement polar;
+  // The pose that makes the ray end where the measurement is, whatever corrected it.
+  polar.T_landmarks_sensor.rotation = measurement.R_submap_base;
+  polar.T_landmarks_sensor.translation_m = measurement.position_m - measurement.R_submap_base * measurement.ray_m;
+  polar.range_bearing_elevation = toRangeBearingElevation(measurement.ray_m);
+  const double planar_m = std::max(kMinRange_m, measurement.ray_m.head<2>().norm());
+  polar.stddev = {stddev_m[0], stddev_m[1] / planar_m, stddev_m[2] / range_m};
+  polar.sensor_position_cov_m2 = measurement.pose_cov_m2;
+  return unscentedUpdate(predicted, polar);
+}
+
 TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, const TrackedLandmark& landmark,
                                              const Measurement& measurement, const TreeInput& input,
                                              const Candidate& candidate) const {
@@ -28,9 +50,7 @@ TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, cons
   predicted.cov_m2.diagonal().head<2>().array() +=
       measurement.wander_variance_per_m * (input.driven_m - landmark.updated_at_m);
   result->updated_at_m = input.driven_m;
-  PositionMeasurement position{measurement.position_m, measurement.cov_m2};
-  if (candidate.is_outlier) position.cov_m2.diagonal() += measurement.outlier_variance_m2;
-  const auto update = unscentedUpdate(predicted, position);
+  const auto update = filtered(predicted, measurement, candidate.is_outlier);
   if (update) result->position = update->posterior;
   result->class_probs = model.updatedClassProbs(landmark.class_probs, measurement.class_index);
   ++result->observations;

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kSettledObservations = 3;
 constexpr double kGateMahalanobisSq = 11.3;
+constexpr double kMaxGate_m = 4.0;
 constexpr double kHuberSigma = 2.0;
 constexpr double kHiddenOrNot = 0.5;                 // whether an expected landmark is in sight is not known
 constexpr double kMinExistence = 0.5;                // of earlier landmarks that are expected
@@ -189,15 +190,18 @@ MapHypothesis MapBranching::aligned(const MapHypothesis& leaf, const AlignmentHy
 void MapBranching::matchTheRest(const MapHypothesis& leaf, const PoseOffset& offset, Matches& matches) const {
   std::set<int> taken;
   for (const auto& [id, earlier] : matches) taken.insert(earlier);
+  std::vector<std::pair<int, Gaussian3>> free;
+  for (int i = 0; i < static_cast<int>(map_.landmarks.size()); ++i) {
+    if (taken.count(i) == 0) free.emplace_back(i, placed(i, offset));
+  }
   std::vector<std::tuple<double, LandmarkId, int>> pairs;
   for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
     if (landmark->is_expected || matches.count(landmark->id) > 0) continue;
-    for (int i = 0; i < static_cast<int>(map_.landmarks.size()); ++i) {
-      const MixtureLandmark& earlier = map_.landmarks[static_cast<std::size_t>(i)];
-      if (taken.count(i) > 0 || earlier.mostLikelyClass() != likeliestClass(landmark->class_probs)) continue;
-      const Gaussian3 there = placed(i, offset);
+    const ClassIndex class_index = likeliestClass(landmark->class_probs);
+    for (const auto& [i, there] : free) {
       const Eigen::Vector3d d = there.mean_m - landmark->position.mean_m;
-      if (d.head<2>().norm() > config_.joint.max_window_m) continue;
+      if (d.head<2>().norm() > kMaxGate_m) continue;
+      if (map_.landmarks[static_cast<std::size_t>(i)].mostLikelyClass() != class_index) continue;
       const auto fit = evaluate({Eigen::Vector3d::Zero(), there.cov_m2 + landmark->position.cov_m2}, d);
       if (fit && fit->mahalanobis_sq < kGateMahalanobisSq) pairs.emplace_back(fit->mahalanobis_sq, landmark->id, i);
     }

@@ -14,6 +14,16 @@ namespace {
 constexpr double kCertainExistence = 0.95;  // of landmarks that tell how often what exists is detected
 constexpr double kKeyframeSpacing_m = 2.0;  // nearer ones see the same error of a centroid
 
+/// Deviations along a ray, across it in the plane and vertically.
+Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& ray_m) {
+  const double planar_m = ray_m.head<2>().norm();
+  const Eigen::Vector3d along = planar_m > 0.0 ? ray_m.normalized() : Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d across =
+      planar_m > 0.0 ? Eigen::Vector3d(-ray_m.y() / planar_m, ray_m.x() / planar_m, 0.0) : Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d up = along.cross(across);
+  return {std::sqrt(along.dot(cov_m2 * along)), std::sqrt(across.dot(cov_m2 * across)), std::sqrt(up.dot(cov_m2 * up))};
+}
+
 }  // namespace
 
 Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
@@ -39,6 +49,8 @@ Measurement Mapper::makeMeasurement(const Detection& detection) const {
   Measurement measurement;
   measurement.position_m = bias_.corrected(detection).position_m;
   measurement.cov_m2 = detectorCov(detection) + bias_.uncertainty(detection.class_index, detection.position_m);
+  measurement.ray_m = measurement.position_m;
+  measurement.noise_stddev_m = alongRay(measurement.cov_m2, measurement.ray_m);
   const AssociationConfig& association = config_.association;
   const double stddev_m = std::max(association.outlier_min_stddev_m,
                                    association.outlier_factor * std::sqrt(measurement.cov_m2.diagonal().maxCoeff()));

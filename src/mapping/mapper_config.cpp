@@ -79,6 +79,11 @@ MapperConfig defaultsOf(Estimator estimator) {
 
 void describe(MapperConfig& config, Fields& fields) {
   fields.add("semantics", config.semantics, "false: all classes count as one (ablation).");
+  fields.add<MeasurementModel>(
+      "measurement_model", config.measurement_model,
+      {{"additive", MeasurementModel::kAdditive}, {"range_bearing", MeasurementModel::kRangeBearing}},
+      "How the detector measures: a position (the paper), or range, bearing and elevation, which suits far detections "
+      "whose range is well and whose direction is badly known.");
   describe(config.tree, fields);
   describe(config.association, fields);
   fields.group("detection", config.detection);

@@ -225,5 +225,29 @@ TEST(MapperTest, FramesWithoutAndWithTwoThousandDetectionsAreTaken) {
   EXPECT_EQ(runMapper({}, frames).submaps.size(), 3U);
 }
 
+TEST(MapperTest, RangeBearingModelIsUsedAndAgreesWithTheAdditiveOneInAnUnambiguousWorld) {
+  const auto frames = simulate(6, 0.03, 0.0);
+  MapperConfig config;
+  config.bias.enabled = false;
+  const MapperRun additive = runMapper(config, frames);
+  config.measurement_model = MeasurementModel::kRangeBearing;
+  const MapperRun polar = runMapper(config, frames);
+  ASSERT_EQ(additive.submaps.size(), polar.submaps.size());
+  double largest_m = 0.0;
+  for (std::size_t s = 0; s < polar.submaps.size(); ++s) {
+    const auto& a = additive.submaps[s];
+    const auto& b = polar.submaps[s];
+    ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
+    for (std::size_t i = 0; i < a.associations.size(); ++i) {
+      EXPECT_EQ(a.associations[i].landmark, b.associations[i].landmark);
+    }
+    for (std::size_t j = 0; j < a.landmarks.size(); ++j) {
+      largest_m = std::max(largest_m, (a.landmarks[j].position.mean_m - b.landmarks[j].position.mean_m).norm());
+    }
+  }
+  EXPECT_GT(largest_m, 1e-9);
+  EXPECT_LT(largest_m, 0.05);
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

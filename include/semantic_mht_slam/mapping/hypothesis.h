@@ -14,7 +14,11 @@ namespace semantic_mht_slam {
 /// A detection, in the frame of the submap as the odometry has it or as a hypothesis corrects it.
 struct Measurement {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();  ///< of the detector; for association also of the pose
+  Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();      ///< of the detector; for association also of the pose
+  Eigen::Vector3d ray_m = Eigen::Vector3d::UnitX();          ///< from the base, base axes
+  Eigen::Vector3d noise_stddev_m = Eigen::Vector3d::Ones();  ///< along the ray, across it, vertically
+  Eigen::Quaterniond R_submap_base = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d pose_cov_m2 = Eigen::Matrix3d::Zero();  ///< what the pose's uncertainty has added to `cov_m2`
   ClassIndex class_index = 0;
   int row = 0;
   Eigen::Vector3d outlier_variance_m2 = Eigen::Vector3d::Zero();  ///< added if the centroid is far off, submap axes

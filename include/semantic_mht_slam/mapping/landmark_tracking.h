@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "semantic_mht_slam/mapping/association.h"
 #include "semantic_mht_slam/mapping/detection_rate.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/models/landmark_filter.h"
 
 namespace semantic_mht_slam {
 
@@ -33,6 +35,9 @@ class LandmarkTracking {
   DetectionRate& detectionRate() { return rate_; }
 
  private:
+  std::optional<FilterUpdate> filtered(const Gaussian3& predicted, const Measurement& measurement,
+                                       bool is_outlier) const;
+
   MapperConfig config_;
   DetectionRate rate_;
   double log_class_count_;

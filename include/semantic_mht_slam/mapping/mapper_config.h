@@ -18,6 +18,10 @@ enum class Estimator {
 
 enum class CountPrior { kNone, kLinear, kExponential };
 enum class ClassModel { kDelta, kConfusion };
+enum class MeasurementModel {
+  kAdditive,      ///< position with additive noise (the paper)
+  kRangeBearing,  ///< range, bearing and elevation from a sensor whose position is uncertain
+};
 
 /// Likelihoods of the four cases of an association (paper, section II-A) and the gate.
 struct AssociationConfig {
@@ -63,6 +67,7 @@ struct SubmapConfig {
 struct MapperConfig {
   Estimator estimator = Estimator::kDpmhm;
   bool semantics = true;
+  MeasurementModel measurement_model = MeasurementModel::kAdditive;
   AssociationConfig association;
   DetectionConfig detection;
   TreeConfig tree;
