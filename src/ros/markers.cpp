@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/ros/markers.h"
 
+#include <map>
+
 #include <Eigen/Eigenvalues>
 
 #include "semantic_mht_slam/common/text.h"
@@ -50,7 +52,10 @@ class LandmarkDrawing {
     if (live_.landmark_labels) addLabel(landmark, info);
   }
 
-  visualization_msgs::MarkerArray take() { return std::move(array_); }
+  visualization_msgs::MarkerArray take() {
+    for (auto& [name, dots] : dots_) array_.markers.push_back(std::move(dots));
+    return std::move(array_);
+  }
 
  private:
   visualization_msgs::Marker& push(const std::string& name, int type) {
@@ -68,13 +73,28 @@ class LandmarkDrawing {
     if (rotation.determinant() < 0.0) rotation.col(0) *= -1.0;
     const Eigen::Vector3d size =
         (2.0 * live_.landmark_sigmas * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt()).cwiseMax(kSmallest_m);
+    std_msgs::ColorRGBA color = toColor(info);
+    color.a = static_cast<float>(0.2 + 0.7 * component.weight);
+    if (size.maxCoeff() <= kSmallest_m) return addDot(component.mean, color, info);
     visualization_msgs::Marker& marker = push(info.name, visualization_msgs::Marker::SPHERE);
     marker.pose = toMessage(Pose{Eigen::Quaterniond(rotation), positionOf(component.mean)});
     marker.scale.x = size.x();
     marker.scale.y = size.y();
     marker.scale.z = size.z();
-    marker.color = toColor(info);
-    marker.color.a = static_cast<float>(0.2 + 0.7 * component.weight);
+    marker.color = color;
+  }
+
+  /// Ellipsoids of the smallest size are equal: one marker for those of a class is much cheaper to show.
+  void addDot(const geometry_msgs::Point& position, const std_msgs::ColorRGBA& color, const ClassInfo& info) {
+    const auto [found, is_new] = dots_.try_emplace(info.name, marker_);
+    visualization_msgs::Marker& dots = found->second;
+    if (is_new) {
+      dots.ns = info.name;
+      dots.type = visualization_msgs::Marker::SPHERE_LIST;
+      dots.scale.x = dots.scale.y = dots.scale.z = kSmallest_m;
+    }
+    dots.points.push_back(position);
+    dots.colors.push_back(color);
   }
 
   void addAlternatives(const Landmark& landmark) {
@@ -106,6 +126,7 @@ class LandmarkDrawing {
   const LiveConfig& live_;
   visualization_msgs::Marker marker_;
   visualization_msgs::MarkerArray array_;
+  std::map<std::string, visualization_msgs::Marker> dots_;  ///< by class
   const std_msgs::ColorRGBA undecided_color_ = [] {
     std_msgs::ColorRGBA color;
     color.r = color.g = color.a = 1.0F;

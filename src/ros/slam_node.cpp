@@ -75,7 +75,7 @@ void SlamNode::receive(const SemanticObjectArrayConstPtr& message) {
 void SlamNode::work() {
   using Clock = std::chrono::steady_clock;
   while (const std::optional<InputMessage> message = queue_.pop()) {
-    const std::lock_guard<std::mutex> lock(slam_mutex_);
+    const std::lock_guard<TicketMutex> lock(slam_mutex_);
     const std::size_t frames = slam_->counters().frames;
     const Clock::time_point begin = Clock::now();
     std::visit([this](const auto& pointer) { handle(*pointer); }, *message);
@@ -182,7 +182,7 @@ void SlamNode::noteStatus() {
 }
 
 void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
-  const std::lock_guard<std::mutex> lock(slam_mutex_);
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
   if (slam_->counters().odometry != published_odometry_) {
     published_odometry_ = slam_->counters().odometry;
     publisher_.publishTrajectory(slam_->trajectory());

@@ -11,7 +11,7 @@ void SlamNode::advertiseServices() {
 }
 
 bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  const std::lock_guard<std::mutex> lock(slam_mutex_);
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
   const std::size_t before = slam_->map().submaps().size();
   slam_->finish();
   const std::size_t submaps = slam_->map().submaps().size();
@@ -22,6 +22,7 @@ bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Resp
     return true;
   }
   publisher_.publishMap(*slam_, live_.get());
+  published_odometry_ = 0;  // the trajectory may have been corrected
   noteStatus();
   response.message = "submap " + std::to_string(submaps - 1) + " is finished; the map holds " +
                      std::to_string(publisher_.landmarks()) + " landmarks";
@@ -29,7 +30,7 @@ bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Resp
 }
 
 bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  const std::lock_guard<std::mutex> lock(slam_mutex_);
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
   const std::size_t landmarks = publisher_.landmarks();
   waiting_objects_.clear();
   startAgain();

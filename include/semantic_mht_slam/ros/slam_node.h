@@ -20,6 +20,7 @@
 #include "semantic_mht_slam/ros/node_diagnostics.h"
 #include "semantic_mht_slam/ros/sensor_transforms.h"
 #include "semantic_mht_slam/ros/slam_publisher.h"
+#include "semantic_mht_slam/ros/ticket_mutex.h"
 #include "semantic_mht_slam/ros/time_jump_guard.h"
 #include "semantic_mht_slam/slam/slam.h"
 
@@ -81,7 +82,7 @@ class SlamNode {
   SensorTransforms sensors_;
 
   // Guarded by `slam_mutex_`.
-  std::mutex slam_mutex_;
+  TicketMutex slam_mutex_;
   std::unique_ptr<Slam> slam_;
   SlamPublisher publisher_;
   TimeJumpGuard jump_;

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "semantic_mht_slam/ros/markers.h"
+
+#include "support/recordings.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+/// Two poles that are well known, one of them undecided, and a third that hardly exists.
+SemanticMap makeMap() {
+  SemanticMap map;
+  map.header.frame_id = "map";
+  map.landmarks.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Landmark& landmark = map.landmarks[i];
+    landmark.id = 10 + i;
+    landmark.class_id = 7;
+    landmark.existence_prob = i < 2 ? 0.9 : 0.1;
+    landmark.components.resize(i == 1 ? 2 : 1);
+    for (GaussianComponent& component : landmark.components) {
+      component.weight = 1.0 / static_cast<double>(landmark.components.size());
+      component.covariance = {0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01};
+    }
+  }
+  map.landmarks[1].undecided = true;
+  return map;
+}
+
+std::multiset<std::string> namespaces(const visualization_msgs::MarkerArray& array) {
+  std::multiset<std::string> names;
+  for (std::size_t i = 1; i < array.markers.size(); ++i) names.insert(array.markers[i].ns);
+  return names;
+}
+
+TEST(LandmarkMarkersTest, SmallOnesShareAMarkerAndDoubtfulOnesAreNotShown) {
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), {});
+  EXPECT_EQ(array.markers.front().action, visualization_msgs::Marker::DELETEALL);
+  EXPECT_EQ(namespaces(array), (std::multiset<std::string>{"pole", "undecided"}));
+  EXPECT_EQ(array.markers.back().type, visualization_msgs::Marker::SPHERE_LIST);
+  EXPECT_EQ(array.markers.back().points.size(), 3U) << "one component and two";
+  EXPECT_EQ(array.markers.back().colors.size(), 3U);
+}
+
+TEST(LandmarkMarkersTest, LargeOnesAreEllipsoidsOfTheChosenSize) {
+  SemanticMap map = makeMap();
+  map.landmarks.resize(1);
+  map.landmarks[0].components[0].covariance = {4.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0};
+  LiveConfig live;
+  live.landmark_sigmas = 3.0;
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(map, makeTwoClasses(), live);
+  ASSERT_EQ(array.markers.size(), 2U);
+  const visualization_msgs::Marker& marker = array.markers[1];
+  EXPECT_EQ(marker.type, visualization_msgs::Marker::SPHERE);
+  EXPECT_NEAR(std::max({marker.scale.x, marker.scale.y, marker.scale.z}), 2.0 * 3.0 * 2.0, 1e-9);
+  EXPECT_NEAR(std::min({marker.scale.x, marker.scale.y, marker.scale.z}), 2.0 * 3.0 * 1.0, 1e-9);
+}
+
+TEST(LandmarkMarkersTest, LabelsAndTheLimitOfExistenceFollowTheLiveParameters) {
+  LiveConfig live;
+  live.landmark_labels = true;
+  live.landmark_min_existence_prob = 0.0;
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), live);
+  EXPECT_EQ(namespaces(array).count("labels"), 3U);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
