@@ -21,6 +21,7 @@ constexpr const char* kUsage =
     "  association   detections' landmarks against the true ones\n"
     "  loops         loop closures, or scores of pairs of frames, against true poses\n"
     "  landmarks     mapped landmarks against true ones\n"
+    "  hypotheses    numbers of hypotheses that lived, of one or more runs\n"
     "  alignment     frames against an earlier map after drift, for growing offsets\n"
     "\n"
     "evaluate COMMAND --help tells the options of a command.\n";
@@ -28,11 +29,9 @@ constexpr const char* kUsage =
 using Command = std::pair<std::string, int (*)(const std::vector<std::string>&)>;
 
 const std::vector<Command>& commands() {
-  static const std::vector<Command> list = {{"trajectory", evaluateTrajectory},
-                                            {"association", evaluateAssociation},
-                                            {"loops", evaluateLoops},
-                                            {"landmarks", evaluateLandmarks},
-                                            {"alignment", evaluateAlignment}};
+  static const std::vector<Command> list = {{"trajectory", evaluateTrajectory}, {"association", evaluateAssociation},
+                                            {"loops", evaluateLoops},           {"landmarks", evaluateLandmarks},
+                                            {"hypotheses", evaluateHypotheses}, {"alignment", evaluateAlignment}};
   return list;
 }
 
