@@ -10,10 +10,11 @@
 
 #include "semantic_mht_slam/common/log_math.h"
 
+#include "landmark_selection.h"
+
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kSettledObservations = 3;
 constexpr double kGateMahalanobisSq = 11.3;
 constexpr double kMaxGate_m = 4.0;
 constexpr double kHuberSigma = 2.0;
@@ -43,10 +44,6 @@ Pose poseOf(const PoseOffset& offset) {
 double logMatchOdds(double existence_prob, bool is_static, const JointAlignmentConfig& config) {
   const double match_prob = is_static ? config.static_match_prob : config.movable_match_prob;
   return logit(std::clamp(existence_prob * match_prob, 0.001, 0.999));
-}
-
-bool isSettled(const TrackedLandmark& landmark) {
-  return !landmark.is_expected && landmark.observations >= kSettledObservations && landmark.log_existence_odds > 0.0;
 }
 
 }  // namespace
@@ -93,35 +90,6 @@ std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const Tra
   return alignJointly(points, earlier, prior, classes_, config_.joint);
 }
 
-std::vector<const TrackedLandmark*> MapBranching::nearest(const MapHypothesis& leaf,
-                                                          const Eigen::Vector3d& center_m) const {
-  std::vector<std::tuple<double, LandmarkId, const TrackedLandmark*>> near;
-  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
-    const double distance_m = (landmark->position.mean_m - center_m).norm();
-    if (isSettled(*landmark) && distance_m < config_.radius_m) {
-      near.emplace_back(distance_m, landmark->id, landmark.get());
-    }
-  }
-  std::sort(near.begin(), near.end());
-  near.resize(std::min(near.size(), static_cast<std::size_t>(config_.max_landmarks)));
-  std::vector<const TrackedLandmark*> result;
-  for (const auto& [distance_m, id, landmark] : near) result.push_back(landmark);
-  return result;
-}
-
-std::vector<const TrackedLandmark*> MapBranching::mostSeen(const MapHypothesis& leaf) const {
-  std::vector<std::tuple<int, LandmarkId, const TrackedLandmark*>> seen;
-  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
-    const bool is_of_submap = isSettled(*landmark) && !landmark->is_from_earlier_submap;
-    if (is_of_submap) seen.emplace_back(-landmark->observations, landmark->id, landmark.get());
-  }
-  std::sort(seen.begin(), seen.end());
-  seen.resize(std::min(seen.size(), static_cast<std::size_t>(2 * config_.max_landmarks)));
-  std::vector<const TrackedLandmark*> result;
-  for (const auto& [count, id, landmark] : seen) result.push_back(landmark);
-  return result;
-}
-
 MapBranching::Matches MapBranching::matchesOf(const AlignmentHypothesis& mode,
                                               const std::vector<LandmarkId>& ids) const {
   Matches matches;
@@ -140,7 +108,9 @@ bool MapBranching::branch(const TreeInput& input, std::uint64_t& next_hypothesis
   next_attempt_m_ = input.driven_m + config_.retry_m;
   const AlignmentPrior prior{Pose::identity(), map_.stddev_xy_m, map_.stddev_z_m, map_.stddev_yaw_rad};
   std::vector<LandmarkId> ids;
-  const auto modes = align(nearest(leaves.front(), input.T_submap_base.translation_m), prior, ids);
+  const auto modes = align(
+      nearestLandmarks(leaves.front(), input.T_submap_base.translation_m, config_.radius_m, config_.max_landmarks),
+      prior, ids);
   if (modes.empty()) return false;
   const double excess = std::max(0.0, modes.front().log_likelihood - config_.max_log_evidence);
   const std::size_t parents = leaves.size();
@@ -297,7 +267,7 @@ std::optional<MapConclusion> MapBranching::conclude(const std::vector<MapHypothe
   alignment.weight = agreeingWeight(leaves, *best->map_offset, 0.0);
   const AlignmentPrior prior{alignment.T_earlier_submap, kFinal_m, kFinal_m, kFinal_rad};
   std::vector<LandmarkId> ids;
-  const auto modes = align(mostSeen(*best), prior, ids);
+  const auto modes = align(mostSeenLandmarks(*best, 2 * config_.max_landmarks), prior, ids);
   if (modes.empty()) return result;
   const PoseOffset offset = offsetOf(modes.front());
   Matches matches = matchesOf(modes.front(), ids);

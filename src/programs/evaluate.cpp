@@ -21,6 +21,7 @@ constexpr const char* kUsage =
     "  association   detections' landmarks against the true ones\n"
     "  loops         loop closures, or scores of pairs of frames, against true poses\n"
     "  landmarks     mapped landmarks against true ones\n"
+    "  hypotheses    numbers of hypotheses that lived, of one or more runs\n"
     "  alignment     frames against an earlier map after drift, for growing offsets\n"
     "  benchmark     runs of every method on sequences, odometries and seeds, and a report on them\n"
     "\n"
@@ -31,7 +32,8 @@ using Command = std::pair<std::string, int (*)(const std::vector<std::string>&)>
 const std::vector<Command>& commands() {
   static const std::vector<Command> list = {{"trajectory", evaluateTrajectory}, {"association", evaluateAssociation},
                                             {"loops", evaluateLoops},           {"landmarks", evaluateLandmarks},
-                                            {"alignment", evaluateAlignment},   {"benchmark", evaluateBenchmark}};
+                                             {"hypotheses", evaluateHypotheses}, {"alignment", evaluateAlignment},
+                                             {"benchmark", evaluateBenchmark}};
   return list;
 }
 

@@ -49,7 +49,9 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
   if (config.method == Method::kOdometry) return;
   mapper_.emplace(config.mapper, classes);
   back_end_.emplace(config.back_end, classes);
-  earlier_after_submaps_ = static_cast<int>(config.back_end.revisit.min_driven_m / config.mapper.submap.length_m) + 1;
+  const SubmapConfig& submap = config.mapper.submap;  // what is within its propagation is carried on by the mapper
+  const double earlier_m = std::max(config.back_end.revisit.min_driven_m, submap.propagation_m);
+  earlier_after_submaps_ = static_cast<int>(earlier_m / submap.length_m) + 2;
   mapper_->setEarlierMapProvider([this](const Pose& T_odom_submap) { return earlierMap(T_odom_submap); });
 }
 

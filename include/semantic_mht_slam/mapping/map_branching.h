@@ -57,8 +57,6 @@ class MapBranching {
  private:
   using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap
 
-  std::vector<const TrackedLandmark*> nearest(const MapHypothesis& leaf, const Eigen::Vector3d& center_m) const;
-  std::vector<const TrackedLandmark*> mostSeen(const MapHypothesis& leaf) const;
   std::vector<AlignmentHypothesis> align(const std::vector<const TrackedLandmark*>& landmarks,
                                          const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const;
   Matches matchesOf(const AlignmentHypothesis& mode, const std::vector<LandmarkId>& ids) const;
