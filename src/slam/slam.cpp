@@ -83,7 +83,7 @@ void Slam::take(Submap submap) {
   const DetectionCov cov = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
   auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, cov, keyframe_config_);
   submap_frames_.clear();
-  const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap.merged);
+  const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap);
   map_.add(std::make_shared<const Submap>(std::move(submap)));
   for (const auto& [gone, survivor] : merged) map_.merge(gone, survivor);
 }
@@ -130,7 +130,8 @@ std::vector<CorrectionAnchor> Slam::correctionAnchors() const {
 
 std::vector<MixtureLandmark> Slam::landmarks() const {
   std::vector<MixtureLandmark> landmarks = map_.landmarks([this](int submap) {
-    return back_end_ ? back_end_->T_map_submap(submap) : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
+    return back_end_ ? back_end_->T_map_submap(submap)
+                     : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
   });
   if (!back_end_) return landmarks;
   for (MixtureLandmark& landmark : landmarks) {
