@@ -23,6 +23,16 @@ std::vector<LoopClosureResult> loopClosures(const BackEnd& back_end) {
   return result;
 }
 
+std::vector<SubmapResult> submapResults(const BackEnd& back_end) {
+  const std::vector<MapKeyframe>& keyframes = back_end.keyframes().keyframes;
+  std::vector<SubmapResult> results;
+  for (const SubmapCheck& check : back_end.checks()) {
+    const auto first = static_cast<std::size_t>(check.first_keyframe);
+    if (first < keyframes.size()) results.push_back({keyframes[first].frame, check});
+  }
+  return results;
+}
+
 }  // namespace
 
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
@@ -50,7 +60,10 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.trajectory = slam.trajectory();
   result.counters = slam.counters();
   result.landmarks = slam.landmarks();
-  if (slam.backEnd() != nullptr) result.loop_closures = loopClosures(*slam.backEnd());
+  if (slam.backEnd() != nullptr) {
+    result.loop_closures = loopClosures(*slam.backEnd());
+    result.submap_checks = submapResults(*slam.backEnd());
+  }
   result.associations = slam.map().associations();
   result.submaps = slam.map().submaps().size();
   if (result.trajectory.empty()) throw InputError("no odometry sample could be used");

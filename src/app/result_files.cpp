@@ -77,15 +77,49 @@ std::string formatAssociations(const std::vector<DetectionAssociation>& associat
 }
 
 std::string formatLoopClosures(const std::vector<LoopClosureResult>& closures) {
-  std::string text = "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw,source,reason\n";
+  std::string text =
+      "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw,source,reason,"
+      "histogram_divergence,descriptor_score,topology_score,scene_score,loop_prob\n";
   for (const auto& [query_frame, match_frame, record] : closures) {
     text += std::to_string(query_frame) + "," + std::to_string(match_frame) + "," + (record.is_accepted ? "1" : "0") +
             "," + formatFixed(record.score, 4) + "," + std::to_string(record.inliers);
     for (int i = 0; i < 3; ++i) text += "," + formatFixed(record.T_match_query.translation_m[i], 4);
     for (const double q : record.T_match_query.rotation.coeffs()) text += "," + formatFixed(q, 8);
-    text += "," + nameOf(record.source) + "," + record.reason + "\n";
+    text += "," + nameOf(record.source) + "," + record.reason;
+    const PlaceScores& place = record.place;
+    for (const double score : {place.histogram_divergence, place.descriptor_score, place.topology_score,
+                               place.scene_score, place.loop_prob}) {
+      text += "," + formatFixed(score, 4);
+    }
+    text += "\n";
   }
   return text;
+}
+
+/// Features are empty for a submap without landmarks.
+std::string formatSubmaps(const std::vector<SubmapResult>& submaps) {
+  std::string text = "submap,first_frame,checked,good_prob,entropy,tf_idf,landmarks\n";
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    const auto& [first_frame, check] = submaps[i];
+    text += std::to_string(i) + "," + std::to_string(first_frame) + "," + (check.is_checked ? "1" : "0") + "," +
+            formatFixed(check.evaluation.good_prob, 4);
+    if (const auto& features = check.evaluation.features) {
+      text += "," + formatFixed(features->entropy, 4) + "," + formatFixed(features->tf_idf, 4) + "," +
+              std::to_string(features->landmarks) + "\n";
+    } else {
+      text += ",,,0\n";
+    }
+  }
+  return text;
+}
+
+/// What the submap evaluator spared.
+Json summarizeChecks(const std::vector<SubmapResult>& submaps) {
+  const auto checked = static_cast<double>(std::count_if(
+      submaps.begin(), submaps.end(), [](const SubmapResult& submap) { return submap.check.is_checked; }));
+  const auto all = static_cast<double>(submaps.size());
+  return {{"checked_submaps", static_cast<std::size_t>(checked)},
+          {"skipped_share", submaps.empty() ? 0.0 : 1.0 - checked / all}};
 }
 
 std::size_t acceptedClosures(const std::vector<LoopClosureResult>& closures) {
@@ -144,6 +178,7 @@ void writeResultFiles(const std::string& folder, const Recording& recording, con
   writeFileAtomically(folder + "/trajectory.tum", formatTumTrajectory(result.trajectory));
   writeFileAtomically(folder + "/trajectory_online.tum", formatTumTrajectory(result.online_trajectory));
   writeFileAtomically(folder + "/loop_closures.csv", formatLoopClosures(result.loop_closures));
+  writeFileAtomically(folder + "/submaps.csv", formatSubmaps(result.submap_checks));
   writeFileAtomically(folder + "/landmarks.csv", formatLandmarks(result.landmarks, classes));
   writeFileAtomically(folder + "/associations.csv", formatAssociations(result.associations));
   writeFileAtomically(folder + "/config.yaml", toYaml(config));
@@ -160,6 +195,7 @@ void writeReport(const std::string& folder, const RunResult& result, const std::
                  {"hypotheses", summarizeHypotheses(result.hypotheses)},
                  {"landmarks", result.landmarks.size()},
                  {"submaps", result.submaps},
+                 {"place", summarizeChecks(result.submap_checks)},
                  {"loop_closures", acceptedClosures(result.loop_closures)},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};

@@ -23,6 +23,19 @@ Method methodOf(const std::vector<Setting>& settings) {
   return config.method;
 }
 
+/// A file that a configuration in `folder` names: as it stands if it is the package's own, else absolute.
+std::string located(const std::string& name, const std::string& folder) {
+  const fs::path beside = fs::path(folder) / name;
+  std::error_code error;
+  if (fs::equivalent(beside, packageConfigFile(name), error) || !fs::exists(beside)) return name;
+  return fs::absolute(beside).lexically_normal().string();
+}
+
+/// Where a located file can be opened.
+std::string readable(const std::string& name) {
+  return fs::path(name).is_absolute() ? name : packageConfigFile(name);
+}
+
 }  // namespace
 
 void describe(NodeConfig& config, Fields& fields) {
@@ -93,17 +106,23 @@ Setting parseOverride(const std::string& text) {
 }
 
 std::string locateClassTable(const SystemConfig& config, const std::string& folder) {
-  const fs::path beside = fs::path(folder) / config.class_table;
-  std::error_code error;
-  if (fs::equivalent(beside, packageConfigFile(config.class_table), error) || !fs::exists(beside)) {
-    return config.class_table;
-  }
-  return fs::absolute(beside).lexically_normal().string();
+  return located(config.class_table, folder);
+}
+
+std::string locateEvaluatorTree(const SystemConfig& config, const std::string& folder) {
+  return located(config.slam.back_end.evaluator.tree, folder);
 }
 
 ClassTable loadClassTable(const SystemConfig& config, const std::string& folder) {
-  const std::string located = locateClassTable(config, folder);
-  return readClassTable(fs::path(located).is_absolute() ? located : packageConfigFile(located));
+  return readClassTable(readable(locateClassTable(config, folder)));
+}
+
+SlamConfig loadableSlamConfig(const SystemConfig& config, const std::string& folder) {
+  SlamConfig slam = config.slam;
+  SubmapEvaluatorConfig& evaluator = slam.back_end.evaluator;
+  evaluator.tree = readable(locateEvaluatorTree(config, folder));
+  if (!evaluator.check_all) SubmapClassifier::load(evaluator.tree);
+  return slam;
 }
 
 void requireUsableFrames(const NodeConfig& config) {

@@ -17,7 +17,6 @@ void describe(PaperChainConfig& config, Fields& fields) {
   fields.add("scenes_per_submap", config.scenes_per_submap, "", {1, 100000}, "Scenes of each that are scored.");
   fields.add("max_scene_distance", config.max_scene_distance, "", {0.0, 1.5},
              "Largest Euclidean distance of the class histograms of two scenes.");
-  fields.add("recent", config.recent_m, "m", {0.0, 1e6}, "What was driven by so lately is no revisit.");
   fields.add("min_score", config.min_score, "", {-1.0, 2.0}, "Least sum of topology and landmark score that passes.");
   fields.group("covisibility", config.covisibility);
   fields.group("scene", config.scene);
@@ -43,7 +42,7 @@ void PaperChain::add(const ClassHistogram& submap_histogram, const std::vector<K
     submap.begin_m = std::min(submap.begin_m, keyframe.driven_m);
     submap.scenes.insert(classHistogram(keyframe.scene, classes_));
     submap.places.push_back(
-        {keyframe.frame, keyframe.submap, keyframe.driven_m, keyframe.scene, laplacianOf(keyframe.scene)});
+        {places_++, keyframe.frame, keyframe.submap, keyframe.driven_m, keyframe.scene, laplacianOf(keyframe.scene)});
   }
   submap_index_.insert(submap_histogram);
   submaps_.push_back(std::move(submap));
@@ -52,15 +51,19 @@ void PaperChain::add(const ClassHistogram& submap_histogram, const std::vector<K
 PaperCandidate PaperChain::scorePair(const Place& place, const Keyframe& keyframe,
                                      const Eigen::MatrixXd& laplacian) const {
   PaperCandidate candidate;
+  candidate.place = place.number;
   candidate.frame = place.frame;
   candidate.submap = place.submap;
   candidate.topology_score = laplacianCorrelation(laplacian, place.laplacian);
-  if (candidate.topology_score + 1.0 < config_.min_score) {  // S_scene is at most 1, and dear
-    candidate.reason = "topology score too low";
-    return candidate;
+  const double lacking = config_.min_score - candidate.topology_score;
+  if (lacking > 1.0) {
+    candidate.refusal = PlaceRefusal::kUnlikeTopology;
+  } else if (sceneScoreBound(keyframe.scene, place.scene, config_.scene) < lacking) {
+    candidate.refusal = PlaceRefusal::kUnlikeScene;
+  } else {
+    candidate.scene_score = sceneScore(keyframe.scene, place.scene, config_.scene);
+    if (candidate.score() < config_.min_score) candidate.refusal = PlaceRefusal::kUnlikeScene;
   }
-  candidate.scene_score = sceneScore(keyframe.scene, place.scene, config_.scene);
-  if (candidate.score() < config_.min_score) candidate.reason = "sum of topology and scene score too low";
   return candidate;
 }
 
@@ -94,10 +97,11 @@ std::vector<PaperCandidate> PaperChain::query(const Keyframe& keyframe, const Cl
   std::sort(candidates.begin(), candidates.end(), [](const PaperCandidate& a, const PaperCandidate& b) {
     return std::make_tuple(-a.score(), a.frame) < std::make_tuple(-b.score(), b.frame);
   });
-  const double loop_prob = filter_.update(!candidates.empty() && candidates.front().reason.empty());
+  const double loop_prob = filter_.update(!candidates.empty() && candidates.front().refusal == PlaceRefusal::kNone);
   for (PaperCandidate& candidate : candidates) {
     candidate.loop_prob = loop_prob;
-    if (candidate.reason.empty() && !filter_.believes()) candidate.reason = "loop filter is not convinced";
+    const bool is_proposed = candidate.refusal == PlaceRefusal::kNone;
+    if (is_proposed && !filter_.believes()) candidate.refusal = PlaceRefusal::kFilter;
   }
   return candidates;
 }

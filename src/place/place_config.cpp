@@ -31,6 +31,10 @@ void describeChecks(PlaceConfig& config, Fields& fields) {
 }  // namespace
 
 void describe(PlaceConfig& config, Fields& fields) {
+  fields.add<PlaceChain>("chain", config.chain,
+                         {{"pair_distance", PlaceChain::kPairDistance}, {"paper", PlaceChain::kPaper}},
+                         "What picks the keyframes that are verified: distances of pairs of objects, or the paper's "
+                         "histograms, scores and filter.");
   fields.add("recent", config.recent_m, "m", {0.0, 1e6},
              "Keyframes driven through less than this before are no revisit.");
   fields.add("drift_gate", config.drift_gate,
@@ -44,6 +48,7 @@ void describe(PlaceConfig& config, Fields& fields) {
   fields.add("min_descriptor_score", config.min_descriptor_score, "", {0.0, 1.0}, "Least similarity of descriptors.");
   describeChecks(config, fields);
   fields.group("descriptor", config.descriptor);
+  fields.group("paper", config.paper);
   fields.group("alignment", config.alignment);
 }
 

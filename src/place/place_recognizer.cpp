@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
-#include <Eigen/Eigenvalues>
+#include "alignment_check.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -14,70 +16,29 @@ constexpr double kDriftShare = 0.02;      // of neighbouring keyframes relative 
 constexpr double kNearShareOfGate = 0.5;  // further out two matches that agree are as likely two of a twin street
 constexpr double kSamePlaceBase_m = 5.0;  // two matches of one keyframe that differ less name one place
 
-double largestHorizontalStddev(const Eigen::Matrix<double, 6, 6>& cov) {
-  const Eigen::Matrix2d horizontal = cov.topLeftCorner<2, 2>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(horizontal, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()(1)));
-}
-
-/// Checks of an alignment that need nothing else.
-PlaceRefusal judge(const SceneAlignment& alignment, double rival_score, const PlaceConfig& config) {
-  if (static_cast<int>(alignment.pairs.size()) < config.min_inliers) return PlaceRefusal::kFewInliers;
-  if (alignment.pair_classes < config.min_classes) return PlaceRefusal::kFewClasses;
-  if (alignment.spread_m < config.min_spread_m) return PlaceRefusal::kOnALine;
-  if (largestHorizontalStddev(alignment.cov) > config.max_stddev_m ||
-      std::sqrt(alignment.cov(5, 5)) > config.max_stddev_rad) {
-    return PlaceRefusal::kUncertain;
-  }
-  if (alignment.similarity < config.supported_score ||
-      alignment.similarity < config.min_share * alignment.soft_inliers ||
-      alignment.log_evidence < config.min_log_evidence) {
-    return PlaceRefusal::kLowScore;
-  }
-  if (rival_score > config.rival_ratio * alignment.similarity) return PlaceRefusal::kAmbiguous;
-  return PlaceRefusal::kNone;
-}
-
 bool passed(const PlaceMatch& match) {
   return match.refusal == PlaceRefusal::kNone;
 }
 
-}  // namespace
-
-std::string reasonText(PlaceRefusal refusal) {
-  switch (refusal) {
-    case PlaceRefusal::kNone:
-      return "";
-    case PlaceRefusal::kUnlikePlace:
-      return "the scenes are not alike";
-    case PlaceRefusal::kNoAlignment:
-      return "no motion lays the scenes onto each other";
-    case PlaceRefusal::kFewInliers:
-      return "too few objects lie on each other";
-    case PlaceRefusal::kFewClasses:
-      return "objects of too few classes lie on each other";
-    case PlaceRefusal::kOnALine:
-      return "the objects stand in one row";
-    case PlaceRefusal::kUncertain:
-      return "the pose stays too uncertain";
-    case PlaceRefusal::kLowScore:
-      return "too little of the scenes lies on each other";
-    case PlaceRefusal::kAmbiguous:
-      return "another alignment is nearly as good";
-    case PlaceRefusal::kOutsideGate:
-      return "further from the estimate than drift explains";
-    case PlaceRefusal::kRivalPlace:
-      return "another place fits nearly as well";
-    case PlaceRefusal::kUnsupported:
-      return "no neighbouring keyframe agrees";
-    case PlaceRefusal::kBetterCandidate:
-      return "another keyframe of the place fits better";
-  }
-  throw std::logic_error("reasonText: no such refusal");
+/// What passed first, by falling score.
+void sortMatches(std::vector<PlaceMatch>& matches) {
+  std::stable_sort(matches.begin(), matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
+    return passed(a) != passed(b) ? passed(a) : a.verification_score > b.verification_score;
+  });
 }
 
+PaperChainConfig paperConfig(const PlaceConfig& config) {
+  PaperChainConfig paper = config.paper;
+  paper.recent_m = config.recent_m;
+  return paper;
+}
+
+}  // namespace
+
 PlaceRecognizer::PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes)
-    : config_(config), classes_(classes) {}
+    : config_(config), classes_(classes) {
+  if (config.chain == PlaceChain::kPaper) paper_.emplace(paperConfig(config), classes.size());
+}
 
 PlaceRecognizer::Place PlaceRecognizer::makePlace(Keyframe keyframe) const {
   Place place;
@@ -149,9 +110,28 @@ std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t
     match.descriptor_score = -negative_score;
     matches.push_back(std::move(match));
   }
-  std::stable_sort(matches.begin(), matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
-    return passed(a) != passed(b) ? passed(a) : a.verification_score > b.verification_score;
-  });
+  sortMatches(matches);
+  return matches;
+}
+
+std::vector<PlaceMatch> PlaceRecognizer::comparePaper(const Keyframe& query, std::size_t query_index,
+                                                      const ClassHistogram& submap_histogram) {
+  std::vector<PlaceMatch> matches;
+  for (const PaperCandidate& candidate : paper_->query(query, submap_histogram)) {
+    if (candidate.submap >= query.submap) continue;
+    if (matches.size() == static_cast<std::size_t>(config_.max_candidates)) break;
+    PlaceMatch match;
+    if (candidate.refusal == PlaceRefusal::kNone) match = verify(places_[query_index], candidate.place);
+    if (candidate.refusal != PlaceRefusal::kNone) match.refusal = candidate.refusal;
+    match.query = query_index;
+    match.match = candidate.place;
+    match.histogram_divergence = candidate.histogram_divergence;
+    match.topology_score = candidate.topology_score;
+    match.scene_score = candidate.scene_score;
+    match.loop_prob = candidate.loop_prob;
+    matches.push_back(std::move(match));
+  }
+  sortMatches(matches);
   return matches;
 }
 
@@ -177,7 +157,7 @@ PlaceMatch PlaceRecognizer::verify(const Place& query, std::size_t index) const 
   for (const PlanarObject& object : query.scene.objects) of_query[object.index] = object.landmark;
   for (const PlanarObject& object : place.scene.objects) of_match[object.index] = object.landmark;
   for (const AlignedPair& pair : best.pairs) match.pairs.emplace_back(of_query[pair.query], of_match[pair.match]);
-  match.refusal = judge(best, match.rival_score, config_);
+  match.refusal = checkAlignment(best, match.rival_score, config_);
   return match;
 }
 
@@ -242,17 +222,30 @@ bool PlaceRecognizer::isSupported(const PlaceMatch& match, const std::vector<Pla
 }
 
 std::vector<PlaceMatch> PlaceRecognizer::process(std::vector<Keyframe> keyframes,
-                                                 const std::vector<Pose>& T_map_keyframe) {
+                                                 const std::vector<Pose>& T_map_keyframe, const SubmapSummary& submap) {
   const std::size_t earlier = places_.size();
+  const std::vector<Keyframe> asked = paper_ ? keyframes : std::vector<Keyframe>{};
   add(std::move(keyframes), T_map_keyframe.size());
+  if (paper_) paper_->add(submap.histogram, asked);
+  if (!submap.is_checked) {
+    if (paper_) paper_->resetFilter();
+    return {};
+  }
   std::vector<std::vector<PlaceMatch>> of_queries;
   for (std::size_t query = earlier; query < places_.size(); ++query) {
-    std::vector<PlaceMatch> matches = compare(places_[query], query, gated(query, earlier, T_map_keyframe));
+    of_queries.push_back(paper_ ? comparePaper(asked[query - earlier], query, submap.histogram)
+                                : compare(places_[query], query, gated(query, earlier, T_map_keyframe)));
+  }
+  return decide(std::move(of_queries), T_map_keyframe);
+}
+
+std::vector<PlaceMatch> PlaceRecognizer::decide(std::vector<std::vector<PlaceMatch>> of_queries,
+                                                const std::vector<Pose>& T_map_keyframe) {
+  for (std::vector<PlaceMatch>& matches : of_queries) {
     refuseOutsideGate(matches, T_map_keyframe);
     std::stable_partition(matches.begin(), matches.end(), passed);
     refuseRivals(matches, T_map_keyframe);
     if (!matches.empty() && passed(matches.front())) recent_.push_back(matches.front());
-    of_queries.push_back(std::move(matches));
   }
   std::vector<PlaceMatch> result;
   for (std::vector<PlaceMatch>& matches : of_queries) {
@@ -263,14 +256,15 @@ std::vector<PlaceMatch> PlaceRecognizer::process(std::vector<Keyframe> keyframes
     }
     std::move(matches.begin(), matches.end(), std::back_inserter(result));
   }
-  if (!places_.empty()) {
-    const double oldest_m = places_.back().keyframe.driven_m - config_.support_reach_m;
-    recent_.erase(
-        std::remove_if(recent_.begin(), recent_.end(),
-                       [&](const PlaceMatch& match) { return places_[match.query].keyframe.driven_m < oldest_m; }),
-        recent_.end());
-  }
+  forgetOldMatches();
   return result;
+}
+
+void PlaceRecognizer::forgetOldMatches() {
+  if (places_.empty()) return;
+  const double oldest_m = places_.back().keyframe.driven_m - config_.support_reach_m;
+  const auto is_old = [&](const PlaceMatch& match) { return places_[match.query].keyframe.driven_m < oldest_m; };
+  recent_.erase(std::remove_if(recent_.begin(), recent_.end(), is_old), recent_.end());
 }
 
 std::vector<PlaceMatch> PlaceRecognizer::locate(const Scene& scene, const std::vector<Pose>& T_map_keyframe) const {

@@ -104,17 +104,53 @@ void describe(SceneScoreConfig& config, Fields& fields) {
   fields.add("min_objects", config.min_objects, "", {1, 1000}, "A scene with less objects has the score 0.");
 }
 
-double sceneScore(const Scene& a, const Scene& b, const SceneScoreConfig& config) {
+namespace {
+
+// Calls `score` of the smaller scene as it is and turned round, with the larger one; 0 for scenes that are too small.
+template <typename Score>
+Match betterWayRound(const Scene& a, const Scene& b, const SceneScoreConfig& config, const Score& score) {
   const Scene& smaller = a.objects.size() <= b.objects.size() ? a : b;
   const Scene& larger = a.objects.size() <= b.objects.size() ? b : a;
-  if (smaller.objects.empty() || static_cast<int>(smaller.objects.size()) < config.min_objects) return 0.0;
+  if (smaller.objects.empty() || static_cast<int>(smaller.objects.size()) < config.min_objects) return {};
   const bool is_principal = config.frame == SceneFrame::kPrincipal;
   std::vector<Point> turned = is_principal ? principalPointsOf(smaller) : pointsOf(smaller);
   const std::vector<Point> fixed = is_principal ? principalPointsOf(larger) : pointsOf(larger);
-  const Match as_it_is = matchOf(turned, fixed, config);
+  const Match as_it_is = score(turned, fixed, config);
   turn(M_PI, turned);
-  const Match turned_round = matchOf(turned, fixed, config);
-  return turned_round.similarity > as_it_is.similarity ? turned_round.score : as_it_is.score;
+  const Match turned_round = score(turned, fixed, config);
+  return turned_round.similarity > as_it_is.similarity ? turned_round : as_it_is;
+}
+
+// Each of `rows` has the one of `columns` that suits it best.
+Match bestOfEach(const std::vector<Point>& rows, const std::vector<Point>& columns, const SceneScoreConfig& config) {
+  Match sum;
+  for (const Point& row : rows) {
+    double best = 0.0;
+    for (const Point& column : columns) {
+      const double squared_m2 = (row.position_m - column.position_m).squaredNorm();
+      const double class_factor = row.class_index == column.class_index ? 1.0 : 1.0 - config.class_penalty;
+      if (squared_m2 >= config.max_distance_m * config.max_distance_m || class_factor <= best) continue;
+      best = std::max(best, (1.0 - std::sqrt(squared_m2) / config.max_distance_m) * class_factor);
+    }
+    sum.similarity += best;
+  }
+  sum.similarity /= static_cast<double>(rows.size());
+  sum.score = sum.similarity;
+  return sum;
+}
+
+}  // namespace
+
+double sceneScore(const Scene& a, const Scene& b, const SceneScoreConfig& config) {
+  const auto assigned = [](const std::vector<Point>& rows, const std::vector<Point>& columns,
+                           const SceneScoreConfig& how) { return matchOf(rows, columns, how); };
+  return betterWayRound(a, b, config, assigned).score;
+}
+
+double sceneScoreBound(const Scene& a, const Scene& b, const SceneScoreConfig& config) {
+  if (config.formula == PairScoreFormula::kAsPrinted) return 1.0;
+  constexpr double kRounding = 1e-9;
+  return std::min(1.0, betterWayRound(a, b, config, bestOfEach).score + kRounding);
 }
 
 }  // namespace semantic_mht_slam

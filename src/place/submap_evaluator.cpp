@@ -3,8 +3,12 @@
 namespace semantic_mht_slam {
 
 void describe(SubmapEvaluatorConfig& config, Fields& fields) {
-  fields.add("check_all", config.check_all, "Searches every submap for loop closures; the tree is not read.");
-  fields.add("tree", config.tree, "Decision tree that picks submaps worth a search, made by train_submap_evaluator.");
+  fields.add("check_all", config.check_all,
+             "Searches every submap that has landmarks for loop closures; the tree is not read.");
+  fields.add("tree", config.tree,
+             "Decision tree that picks the submaps worth a search, made by train_submap_evaluator; relative to this "
+             "file or to "
+             "the package's config.");
 }
 
 SubmapEvaluation SubmapEvaluator::add(const Submap& submap) {

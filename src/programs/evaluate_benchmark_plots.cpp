@@ -164,10 +164,9 @@ void addPoint(const Eigen::Vector3d& position_m, PlotSeries& series) {
   series.y.push_back(position_m.z());
 }
 
-/// Lines between the frames of loop closures, and dots where something was checked.
+/// Lines between the frames of loop closures.
 void addClosures(const BenchmarkCell& cell, const Positions& positions_m, Plot& plot) {
   PlotSeries refused{"refused", {}, {}, kRefusedColor, PlotSeries::Style::kLine};
-  PlotSeries checked{"checked submap", {}, {}, kCheckedColor, PlotSeries::Style::kDots};
   PlotSeries accepted{"loop closure", {}, {}, kAcceptedColor, PlotSeries::Style::kLine};
   PlotSeries closed{"", {}, {}, kAcceptedColor, PlotSeries::Style::kDots};
   for (const ClosureEstimate& closure : readClosures(cell.folder + "/loop_closures.csv")) {
@@ -177,12 +176,28 @@ void addClosures(const BenchmarkCell& cell, const Positions& positions_m, Plot& 
     addPoint(query_m, lines);
     addPoint(match_m, lines);
     addPoint(Eigen::Vector3d::Constant(kInterruption), lines);
-    addPoint(match_m, closure.accepted ? closed : checked);
-    if (closure.accepted) addPoint(query_m, closed);
+    if (!closure.accepted) continue;
+    addPoint(match_m, closed);
+    addPoint(query_m, closed);
   }
   if (!refused.x.empty()) plot.series.insert(plot.series.begin(), refused);
-  if (!checked.x.empty()) plot.series.push_back(checked);
   if (!accepted.x.empty()) plot.series.insert(plot.series.end(), {accepted, closed});
+}
+
+/// The way through the submaps that were searched for loop closures.
+void addCheckedSubmaps(const BenchmarkCell& cell, const Positions& positions_m, Plot& plot) {
+  PlotSeries checked{"checked submap", {}, {}, kCheckedColor, PlotSeries::Style::kLine};
+  const std::vector<CheckedSubmap> submaps = readSubmaps(cell.folder + "/submaps.csv");
+  for (std::size_t i = 0; i < submaps.size(); ++i) {
+    if (!submaps[i].is_checked) continue;
+    const bool is_last = i + 1 == submaps.size();
+    const auto end = is_last ? positions_m.size() : static_cast<std::size_t>(submaps[i + 1].first_frame);
+    for (auto k = static_cast<std::size_t>(submaps[i].first_frame); k < std::min(end, positions_m.size()); ++k) {
+      addPoint(positions_m[k], checked);
+    }
+    addPoint(Eigen::Vector3d::Constant(kInterruption), checked);
+  }
+  if (!checked.x.empty()) plot.series.push_back(checked);
 }
 
 Plot mapPlotOf(const BenchmarkCell& cell) {
@@ -195,6 +210,7 @@ Plot mapPlotOf(const BenchmarkCell& cell) {
   plot.title = caseName(cell.run) + ", seed " + std::to_string(cell.run.seed) + " (aligned)";
   plot.series[1].color = colorOf("odometry");
   plot.series[2].color = colorOf(cell.run.method);
+  addCheckedSubmaps(cell, estimate_m, plot);
   addClosures(cell, estimate_m, plot);
   return plot;
 }

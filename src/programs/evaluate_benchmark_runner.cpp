@@ -81,7 +81,9 @@ class KeyMaker {
                                     cell.objects_file, odometryFile(cell.run.odometry)}) {
       key += name + " " + hashOf(cell.dataset + "/" + name) + "\n";
     }
-    return key + "classes " + hashOf(classTable()) + "\n" + effectiveConfig(request_.config, settings);
+    key += "classes " + hashOf(classTable()) + "\n";
+    if (const std::string tree = evaluatorTree(settings); !tree.empty()) key += "tree " + hashOf(tree) + "\n";
+    return key + effectiveConfig(request_.config, settings);
   }
 
  private:
@@ -95,6 +97,16 @@ class KeyMaker {
     const SystemConfig config = loadSystemConfig(request_.config, {});
     const std::string located = locateClassTable(config, fs::path(request_.config).parent_path().string());
     return fs::path(located).is_absolute() ? located : packageConfigFile(located);
+  }
+
+  /// Empty if every submap is checked.
+  std::string evaluatorTree(const std::vector<std::string>& settings) const {
+    std::vector<Setting> overrides;
+    for (const std::string& text : settings) overrides.push_back(parseOverride(text));
+    const SystemConfig config = loadSystemConfig(request_.config, overrides);
+    if (config.slam.back_end.evaluator.check_all) return "";
+    const std::string folder = fs::path(request_.config).parent_path().string();
+    return loadableSlamConfig(config, folder).back_end.evaluator.tree;
   }
 
   const BenchmarkRequest& request_;

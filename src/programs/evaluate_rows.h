@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,15 @@ namespace semantic_mht_slam {
 /// Loop closures of a CSV query_frame,match_frame,accepted,tx,ty,tz and further columns, which are not looked at.
 /// Throws InputError.
 std::vector<ClosureEstimate> readClosures(const std::string& path);
+
+/// A finished submap, and whether it was searched for loop closures.
+struct CheckedSubmap {
+  std::int64_t first_frame = 0;
+  bool is_checked = false;
+};
+
+/// Submaps of a CSV first_frame,checked and further columns, which are not looked at. Throws InputError.
+std::vector<CheckedSubmap> readSubmaps(const std::string& path);
 
 /// Truth of detections, CSV frame,landmark. Throws InputError.
 std::vector<TrueDetection> readTrueDetections(const std::string& path);

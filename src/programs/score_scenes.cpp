@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +16,10 @@
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
+#include "semantic_mht_slam/place/laplacian.h"
 #include "semantic_mht_slam/place/scene_accumulation.h"
 #include "semantic_mht_slam/place/scene_alignment.h"
+#include "semantic_mht_slam/place/scene_score.h"
 
 #include "program.h"
 
@@ -28,10 +31,11 @@ namespace {
 
 constexpr const char* kUsage =
     "How alike the places of two frames are, from the objects of these two frames alone: the squared soft number of\n"
-    "objects that lie on each other under the best rigid motion, over the number of objects in the smaller frame.\n"
+    "objects that lie on each other under the best rigid motion, over the number of objects in the smaller frame; or,\n"
+    "with --chain paper, the sum of the paper's topology and landmark score.\n"
     "\n"
     "usage: score_scenes --dataset DIR --pairs pairs.csv --output scores.csv [--config FILE] [--objects FILE]\n"
-    "                    [--window N --odometry FILE] [--set KEY=VALUE ...]\n"
+    "                    [--chain default|paper] [--window N --odometry FILE] [--set KEY=VALUE ...]\n"
     "\n"
     "  pairs.csv   columns i,j: rows of the data set's times.txt\n"
     "  scores.csv  columns i,j,score: the same rows; larger is more alike; 0: nothing in common\n";
@@ -43,6 +47,7 @@ struct Arguments {
   std::string pairs;
   std::string output;
   std::string odometry;
+  std::string chain = "default";
   int window = 0;
   std::vector<std::string> settings;
 };
@@ -56,6 +61,8 @@ po::options_description makeOptions(Arguments& arguments) {
       "objects CSV; default: objects.csv of the data set");
   add("pairs", po::value(&arguments.pairs)->value_name("FILE")->required(), "CSV i,j");
   add("output", po::value(&arguments.output)->value_name("FILE")->required(), "CSV i,j,score");
+  add("chain", po::value(&arguments.chain)->value_name("NAME"),
+      "default: objects that lie on each other; paper: the scores of its section III-B");
   add("window", po::value(&arguments.window)->value_name("N"),
       "adds the objects of the N frames before each; needs --odometry; default: 0");
   add("odometry", po::value(&arguments.odometry)->value_name("FILE"),
@@ -98,25 +105,13 @@ std::vector<Pose> readOdometry(const Arguments& arguments, std::size_t frames) {
   return T_odom_base;
 }
 
-/// Scenes of frames, prepared when they are first asked for.
+/// The objects of a frame and, if asked for, of those before it.
 class Scenes {
  public:
-  Scenes(std::vector<Detections> detections, std::vector<Pose> T_odom_base, int window, const ClassTable& classes,
-         double noise_floor_m)
-      : detections_(std::move(detections)),
-        T_odom_base_(std::move(T_odom_base)),
-        window_(window),
-        classes_(classes),
-        noise_floor_m_(noise_floor_m),
-        prepared_(detections_.size()) {}
+  Scenes(std::vector<Detections> detections, std::vector<Pose> T_odom_base, int window, const ClassTable& classes)
+      : detections_(std::move(detections)), T_odom_base_(std::move(T_odom_base)), window_(window), classes_(classes) {}
 
-  const PlanarScene& of(std::size_t frame) {
-    if (!prepared_[frame]) prepared_[frame] = makePlanarScene(sceneAt(frame), classes_, noise_floor_m_);
-    return *prepared_[frame];
-  }
-
- private:
-  Scene sceneAt(std::size_t frame) const {
+  Scene at(std::size_t frame) const {
     if (window_ == 0) return sceneOfFrame(detections_[frame], classes_);
     std::vector<Detections> frames;
     std::vector<Pose> T_base_frame;
@@ -127,18 +122,58 @@ class Scenes {
     return accumulateScene(frames, T_base_frame, classes_);
   }
 
+ private:
   std::vector<Detections> detections_;
   std::vector<Pose> T_odom_base_;
   int window_;
   const ClassTable& classes_;
-  double noise_floor_m_;
-  std::vector<std::optional<PlanarScene>> prepared_;
 };
+
+using ScoreOfPair = std::function<double(std::size_t, std::size_t)>;
+
+/// Keeps what was made of each frame.
+template <typename Prepared>
+std::function<const Prepared&(std::size_t)> memoized(std::function<Prepared(std::size_t)> prepare) {
+  const auto kept = std::make_shared<std::map<std::size_t, Prepared>>();
+  return [kept, prepare = std::move(prepare)](std::size_t frame) -> const Prepared& {
+    const auto found = kept->find(frame);
+    return found != kept->end() ? found->second : kept->emplace(frame, prepare(frame)).first->second;
+  };
+}
+
+ScoreOfPair alignmentScore(const Scenes& scenes, const ClassTable& classes, const SceneAlignmentConfig& config) {
+  const auto prepared = memoized<PlanarScene>(
+      [&](std::size_t frame) { return makePlanarScene(scenes.at(frame), classes, config.noise_floor_m); });
+  return [&, prepared](std::size_t i, std::size_t j) {
+    const std::vector<SceneAlignment> found = alignScenes(prepared(i), prepared(j), classes, config);
+    return found.empty() ? 0.0 : found.front().similarity;
+  };
+}
+
+struct PaperScene {
+  Scene scene;
+  Eigen::MatrixXd laplacian;
+};
+
+ScoreOfPair paperScore(const Scenes& scenes, const ClassTable& classes, const PaperChainConfig& config) {
+  const auto prepared = memoized<PaperScene>([&](std::size_t frame) {
+    const Scene scene = scenes.at(frame);
+    return PaperScene{scene, classLaplacian(scene, classes.size(), config.covisibility)};
+  });
+  return [&, prepared](std::size_t i, std::size_t j) {
+    const PaperScene& a = prepared(i);
+    const PaperScene& b = prepared(j);
+    return laplacianCorrelation(a.laplacian, b.laplacian) + sceneScore(a.scene, b.scene, config.scene);
+  };
+}
 
 void checkArguments(const Arguments& arguments) {
   if (arguments.window < 0) throw InputError("--window must not be negative");
   if ((arguments.window > 0) != !arguments.odometry.empty()) {
     throw InputError("--window and --odometry belong together");
+  }
+  if (arguments.chain != "default" && arguments.chain != "paper") {
+    throw InputError("--chain " + arguments.chain + ": default or paper was expected");
   }
 }
 
@@ -152,14 +187,14 @@ int run(const Arguments& arguments) {
   const FramePairs pairs = readPairs(arguments.pairs, frames);
   std::vector<Pose> T_odom_base;
   if (arguments.window > 0) T_odom_base = readOdometry(arguments, frames);
-  const SceneAlignmentConfig& alignment = config.slam.back_end.place.alignment;
-  Scenes scenes(readObjects(locate(arguments.dataset, arguments.objects), classes, frames), std::move(T_odom_base),
-                arguments.window, classes, alignment.noise_floor_m);
+  const Scenes scenes(readObjects(locate(arguments.dataset, arguments.objects), classes, frames),
+                      std::move(T_odom_base), arguments.window, classes);
+  const PlaceConfig& place = config.slam.back_end.place;
+  const ScoreOfPair score = arguments.chain == "paper" ? paperScore(scenes, classes, place.paper)
+                                                       : alignmentScore(scenes, classes, place.alignment);
   std::string text = "i,j,score\n";
   for (const auto& [i, j] : pairs) {
-    const std::vector<SceneAlignment> found = alignScenes(scenes.of(i), scenes.of(j), classes, alignment);
-    const double score = found.empty() ? 0.0 : found.front().similarity;
-    text += std::to_string(i) + "," + std::to_string(j) + "," + formatDouble(score) + "\n";
+    text += std::to_string(i) + "," + std::to_string(j) + "," + formatDouble(score(i, j)) + "\n";
   }
   writeFileAtomically(arguments.output, text);
   return 0;

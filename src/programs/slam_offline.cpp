@@ -93,13 +93,15 @@ int run(int argc, char** argv) {
   requireUsableFrames(config.node);
   const std::string config_folder = std::filesystem::path(arguments.config).parent_path().string();
   config.class_table = locateClassTable(config, config_folder);
+  config.slam.back_end.evaluator.tree = locateEvaluatorTree(config, config_folder);
   const ClassTable classes = loadClassTable(config, config_folder);
+  const SlamConfig slam_config = loadableSlamConfig(config, config_folder);
   const Recording recording = loadRecording(arguments, classes, config);
   StagedFolder output(arguments.output);
 
   Progress progress("frames");
   const RunResult result =
-      runOffline(recording, config.slam, classes, [&](std::size_t done, std::size_t all) { progress(done, all); });
+      runOffline(recording, slam_config, classes, [&](std::size_t done, std::size_t all) { progress(done, all); });
   writeResultFiles(output.staging(), recording, result, config, classes);
   const std::size_t map_bytes = writeMapFile(output.staging() + "/map.bag", result, classes, config.node);
   const std::optional<TrajectoryError> error = scoreRun(recording, result.trajectory);

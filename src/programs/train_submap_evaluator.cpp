@@ -89,7 +89,8 @@ std::vector<std::uint64_t> parseSeeds(const std::string& text) {
 std::vector<LabelledDrive> makeDrives(const Arguments& arguments) {
   std::vector<Setting> overrides;
   for (const std::string& text : arguments.settings) overrides.push_back(parseOverride(text));
-  const SystemConfig config = loadSystemConfig(arguments.config, overrides);
+  SystemConfig config = loadSystemConfig(arguments.config, overrides);
+  config.slam.back_end.evaluator.check_all = true;  // there may be no tree yet
   const ClassTable classes = loadClassTable(config, std::filesystem::path(arguments.config).parent_path().string());
   const auto seeds = parseSeeds(arguments.seeds);
   const std::size_t all = arguments.scenarios.size() * seeds.size() + arguments.datasets.size();

@@ -83,11 +83,11 @@ LoopClosure toMessage(const Slam& slam, const LoopClosureRecord& record, const s
       message.transform.covariance[static_cast<std::size_t>(6 * row + column)] = record.cov(row, column);
     }
   }
-  message.histogram_divergence = -1.0;
-  message.descriptor_score = -1.0;
-  message.topology_score = -2.0;
-  message.scene_score = -1.0;
-  message.loop_prob = -1.0;
+  message.histogram_divergence = record.place.histogram_divergence;
+  message.descriptor_score = record.place.descriptor_score;
+  message.topology_score = record.place.topology_score;
+  message.scene_score = record.place.scene_score;
+  message.loop_prob = record.place.loop_prob;
   message.verification_score = record.score;
   message.inliers = static_cast<std::uint32_t>(record.inliers);
   return message;

@@ -195,8 +195,9 @@ void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
 
 std::unique_ptr<SlamNode> makeSlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle,
                                        const std::string& config_folder) {
-  const SystemConfig config = makeSystemConfig(readParameters(private_handle));
+  SystemConfig config = makeSystemConfig(readParameters(private_handle));
   requireUsableFrames(config.node);
+  config.slam = loadableSlamConfig(config, config_folder);
   return std::make_unique<SlamNode>(handle, private_handle, config, loadClassTable(config, config_folder));
 }
 

@@ -17,6 +17,23 @@ PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_a_b, double tilt_stdde
   return 0.5 * (result + result.transpose());
 }
 
+LoopClosureRecord toRecord(PlaceMatch match, const std::vector<int>& keyframe_of_place) {
+  LoopClosureRecord record;
+  record.source = ClosureSource::kPlace;
+  record.query_keyframe = keyframe_of_place[match.query];
+  record.match_keyframe = keyframe_of_place[match.match];
+  record.is_accepted = match.accepted;
+  record.reason = reasonText(match.refusal);
+  record.score = match.verification_score;
+  record.place = {match.histogram_divergence, match.descriptor_score, match.topology_score, match.scene_score,
+                  match.loop_prob};
+  record.inliers = match.inliers;
+  record.T_match_query = match.T_match_query;
+  record.cov = match.cov;
+  record.pairs = std::move(match.pairs);
+  return record;
+}
+
 }  // namespace
 
 void describe(BackEndConfig& config, Fields& fields) {
@@ -31,31 +48,35 @@ void describe(BackEndConfig& config, Fields& fields) {
   fields.add("loop_floor", config.loop_floor_m, "m", {0.001, 10.0}, "Least position deviation of a loop closure.");
   fields.add("loop_floor_rad", config.loop_floor_rad, "rad", {1e-5, 1.0}, "Least rotation deviation of one.");
   fields.group("keyframe", config.keyframe);
+  fields.group("evaluator", config.evaluator);
   fields.group("place", config.place);
   fields.group("revisit", config.revisit);
   fields.group("graph", config.graph);
 }
 
 BackEnd::BackEnd(const BackEndConfig& config, const ClassTable& classes)
-    : config_(config), classes_(classes), graph_(config.graph), places_(config.place, classes) {}
+    : config_(config),
+      classes_(classes),
+      graph_(config.graph),
+      evaluator_(makeSubmapEvaluator(config.evaluator, config.evaluator.tree, classes.size())),
+      places_(config.place, classes) {}
 
-std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes, const std::vector<MergedLandmark>& merged,
-                                         const std::optional<MapAlignment>& alignment,
+std::vector<MergedLandmark> BackEnd::add(std::vector<MapKeyframe> keyframes, const Submap& submap,
                                          const SubmapPrediction& prediction) {
   newly_merged_.clear();
   const std::size_t first_new = map_.keyframes.size();
-  first_keyframe_of_submap_.push_back(static_cast<int>(first_new));
+  checks_.push_back({static_cast<int>(first_new), false, evaluator_.add(submap)});
   for (MapKeyframe& keyframe : keyframes) {
     addNode(keyframe);
     map_.keyframes.push_back(std::move(keyframe));
     map_.T_map_keyframe.push_back(graph_.pose(graph_.submaps() - 1));
   }
-  for (const auto& [gone, survivor] : merged) mergeLandmarks(gone, survivor);
+  for (const auto& [gone, survivor] : submap.merged) mergeLandmarks(gone, survivor);
   graph_.optimize();
   readBack();
   if (config_.close_loops && !keyframes.empty()) {
-    if (alignment) closeByHypotheses(first_new, *alignment, prediction);
-    if (config_.recognise_places) recognisePlaces(first_new);
+    if (submap.alignment) closeByHypotheses(first_new, *submap.alignment, prediction);
+    if (config_.recognise_places) recognisePlaces(first_new, submap);
     if (config_.revisit.enabled) findRevisitsOf(first_new);
   }
   return std::exchange(newly_merged_, {});
@@ -88,31 +109,23 @@ void BackEnd::addNode(const MapKeyframe& keyframe) {
   graph_.addSubmap(node);
 }
 
-void BackEnd::recognisePlaces(std::size_t first_new) {
+void BackEnd::recognisePlaces(std::size_t first_new, const Submap& submap) {
   std::vector<Keyframe> keyframes;
   for (std::size_t k = first_new; k < map_.keyframes.size(); ++k) {
     if (k % static_cast<std::size_t>(config_.closure_stride) != 0) continue;
     const MapKeyframe& keyframe = map_.keyframes[k];
-    const int submap = static_cast<int>(first_keyframe_of_submap_.size()) - 1;
-    keyframes.push_back({keyframe.frame, submap, keyframe.driven_m, keyframe.scene});
+    const int index = static_cast<int>(checks_.size()) - 1;
+    keyframes.push_back({keyframe.frame, index, keyframe.driven_m, keyframe.scene});
     keyframe_of_place_.push_back(static_cast<int>(k));
   }
   std::vector<Pose> poses;
   for (const int k : keyframe_of_place_) poses.push_back(map_.T_map_keyframe[static_cast<std::size_t>(k)]);
+  SubmapCheck& check = checks_.back();
+  check.is_checked = check.evaluation.worth_checking;
+  const SubmapSummary summary{classHistogram(submap.landmarks, classes_.size()), check.is_checked};
   std::vector<LoopClosureRecord> records;
-  for (PlaceMatch& match : places_.process(std::move(keyframes), poses)) {
-    LoopClosureRecord record;
-    record.source = ClosureSource::kPlace;
-    record.query_keyframe = keyframe_of_place_[match.query];
-    record.match_keyframe = keyframe_of_place_[match.match];
-    record.is_accepted = match.accepted;
-    record.reason = reasonText(match.refusal);
-    record.score = match.verification_score;
-    record.inliers = match.inliers;
-    record.T_match_query = match.T_match_query;
-    record.cov = match.cov;
-    record.pairs = std::move(match.pairs);
-    records.push_back(std::move(record));
+  for (PlaceMatch& match : places_.process(std::move(keyframes), poses, summary)) {
+    records.push_back(toRecord(std::move(match), keyframe_of_place_));
   }
   close(std::move(records));
 }
@@ -245,7 +258,7 @@ Pose BackEnd::T_map_odom() const {
 
 Pose BackEnd::T_map_submap(int submap) const {
   // A submap begins with its first keyframe.
-  const auto keyframe = static_cast<std::size_t>(first_keyframe_of_submap_.at(static_cast<std::size_t>(submap)));
+  const auto keyframe = static_cast<std::size_t>(checks_.at(static_cast<std::size_t>(submap)).first_keyframe);
   return map_.T_map_keyframe[keyframe];
 }
 

@@ -89,8 +89,7 @@ void Slam::take(Submap submap) {
   const DetectionCov cov = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
   auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, cov, keyframe_config_);
   submap_frames_.clear();
-  const std::vector<MergedLandmark> merged =
-      back_end_->add(std::move(keyframes), submap.merged, submap.alignment, prediction_);
+  const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap, prediction_);
   prediction_ = std::move(next_prediction_);
   map_.add(std::make_shared<const Submap>(std::move(submap)));
   for (const auto& [gone, survivor] : merged) map_.merge(gone, survivor);

@@ -50,6 +50,24 @@ TEST(SystemConfigTest, ClassTableBesideTheConfigurationComesFirst) {
   expectInputError([&] { loadClassTable(config, folder.path()); }, {"none.yaml"});
 }
 
+TEST(SystemConfigTest, TheSubmapEvaluatorsTreeIsFoundAndAMissingOrForeignOneIsRefused) {
+  SystemConfig config;
+  config.slam.back_end.evaluator.check_all = false;
+  EXPECT_EQ(loadableSlamConfig(config, "/").back_end.evaluator.tree, packageConfigFile("submap_evaluator.yaml"));
+  EXPECT_EQ(locateEvaluatorTree(config, "/"), "submap_evaluator.yaml");
+  const TemporaryFolder folder;
+  writeFileAtomically(folder / "mine.yaml", readFile(packageConfigFile("submap_evaluator.yaml")));
+  config.slam.back_end.evaluator.tree = "mine.yaml";
+  EXPECT_EQ(loadableSlamConfig(config, folder.path()).back_end.evaluator.tree, folder / "mine.yaml");
+  writeFileAtomically(folder / "foreign.yaml", "%YAML:1.0\n---\nformat: other\n");
+  config.slam.back_end.evaluator.tree = "foreign.yaml";
+  expectInputError([&] { loadableSlamConfig(config, folder.path()); }, {"foreign.yaml", "train_submap_evaluator"});
+  config.slam.back_end.evaluator.tree = "none.yaml";
+  expectInputError([&] { loadableSlamConfig(config, folder.path()); }, {"none.yaml", "cannot be read"});
+  config.slam.back_end.evaluator.check_all = true;
+  EXPECT_NO_THROW(loadableSlamConfig(config, folder.path()));
+}
+
 TEST(SystemConfigTest, ReferenceInTheDocumentationIsTheOneThatTheCodeMakes) {
   EXPECT_EQ(readFile(std::string(SMHT_SOURCE_DIR) + "/docs/parameters.md"), parameterReference())
       << "run: rosrun semantic_mht_slam parameter_reference > docs/parameters.md";

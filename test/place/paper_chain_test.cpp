@@ -98,7 +98,7 @@ struct Count {
 Count countProposed(const std::vector<Answer>& answers, bool is_return) {
   Count count;
   for (const auto& [query, candidates] : answers) {
-    if (candidates.empty() || !candidates.front().reason.empty()) continue;
+    if (candidates.empty() || candidates.front().refusal != PlaceRefusal::kNone) continue;
     ++count.proposed;
     const int error = std::abs(placeOf(candidates.front().frame, is_return) - placeOf(query.frame, is_return));
     if (error <= 3) ++count.right;
@@ -129,8 +129,8 @@ TEST(PaperChainTest, CandidatesAreRankedNotRecentAndCarryTheirScores) {
       EXPECT_EQ(candidate.submap, static_cast<int>(candidate.frame) / kKeyframesOfSubmap);
       EXPECT_GE(candidates.front().score(), candidate.score());
       EXPECT_GE(candidate.score(), candidates.back().score());
-      EXPECT_TRUE(!candidate.reason.empty() || candidate.score() >= config.min_score);
-      EXPECT_TRUE(!candidate.reason.empty() || candidate.loop_prob >= config.filter.min_loop_prob);
+      EXPECT_TRUE(candidate.refusal != PlaceRefusal::kNone || candidate.score() >= config.min_score);
+      EXPECT_TRUE(candidate.refusal != PlaceRefusal::kNone || candidate.loop_prob >= config.filter.min_loop_prob);
       ++all;
     }
   }
@@ -161,7 +161,7 @@ TEST(PaperChainTest, EmptyScenesAndScenesOfOneClassAreNeverProposed) {
     const ClassHistogram histogram = classHistogram(keyframe.scene, kClasses);
     chain.add(histogram, {keyframe});
     for (const PaperCandidate& candidate : chain.query(keyframe, histogram)) {
-      EXPECT_FALSE(candidate.reason.empty());
+      EXPECT_NE(candidate.refusal, PlaceRefusal::kNone);
       EXPECT_EQ(candidate.submap % 2, 0) << "an empty scene was found";
     }
   }
@@ -184,8 +184,8 @@ TEST(PaperChainTest, AScoreThatThresholdsCannotReachIsNotComputed) {
   int pruned = 0;
   for (const auto& [query, candidates] : driveTwice(config, 5, false)) {
     for (const PaperCandidate& candidate : candidates) {
-      EXPECT_FALSE(candidate.reason.empty());
-      pruned += candidate.scene_score == -1.0 && candidate.reason == "topology score too low";
+      EXPECT_NE(candidate.refusal, PlaceRefusal::kNone);
+      pruned += candidate.scene_score == -1.0 && candidate.refusal == PlaceRefusal::kUnlikeTopology;
     }
   }
   EXPECT_GT(pruned, 0);

@@ -61,6 +61,22 @@ TEST(SceneScoreTest, IsSymmetricAndInTheUnitInterval) {
   }
 }
 
+TEST(SceneScoreTest, IsNeverAboveItsBound) {
+  for (const SceneFrame frame : {SceneFrame::kBase, SceneFrame::kPrincipal}) {
+    for (const PairScoreFormula formula : {PairScoreFormula::kSimilarity, PairScoreFormula::kAsPrinted}) {
+      SceneScoreConfig config;
+      config.frame = frame;
+      config.formula = formula;
+      for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        Rng rng(seed);
+        const Scene a = randomScene(5 + static_cast<int>(rng.index(25)), 3, rng);
+        const Scene b = seed % 2 == 0 ? randomScene(20, 3, rng) : seenFrom(a, M_PI, Eigen::Vector3d::Zero(), 0.5, rng);
+        EXPECT_LE(sceneScore(a, b, config), sceneScoreBound(a, b, config)) << "seed " << seed;
+      }
+    }
+  }
+}
+
 TEST(SceneScoreTest, IsTheMeanOfDistanceAndClassOfThePairs) {
   SceneScoreConfig config = configOf(SceneFrame::kBase);
   config.min_objects = 1;

@@ -60,8 +60,8 @@ TEST_F(ProgramsTest, OfflineRunWritesEveryFileAndTwoRunsWriteTheSameBytes) {
   ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments()).exit_code, 0);
   ASSERT_EQ(runProgramOfPackage("slam_offline", "--bag '" + drive_ + "/drive.bag' --output '" + again + "'").exit_code,
             0);
-  for (const char* file : {"trajectory.txt", "trajectory.tum", "loop_closures.csv", "landmarks.csv", "associations.csv",
-                           "config.yaml", "map.bag"}) {
+  for (const char* file : {"trajectory.txt", "trajectory.tum", "loop_closures.csv", "submaps.csv", "landmarks.csv",
+                           "associations.csv", "config.yaml", "map.bag"}) {
     EXPECT_EQ(readFile(output_ + "/" + file), readFile(again + "/" + file)) << file << " of folder and bag";
   }
   EXPECT_NE(readFile(output_ + "/report.json").find("\"se3_m\""), std::string::npos);
@@ -88,6 +88,9 @@ TEST_F(ProgramsTest, BadOptionsAreRefused) {
   expectRefused("slam_offline", offlineArguments() + "--set no.such=1", "unknown key 'no.such'");
   expectRefused("slam_offline", offlineArguments() + "--set node.queue_size=0", "out of range");
   expectRefused("slam_offline", offlineArguments() + "--config /no/such.yaml", "/no/such.yaml");
+  expectRefused("slam_offline",
+                offlineArguments() + "--set evaluator.check_all=false --set evaluator.tree=/no/such/tree.yaml",
+                "/no/such/tree.yaml");
   expectRefused("kitti_to_bag", "--dataset '" + drive_ + "'", "--output");
   expectRefused("kitti_to_bag", "--dataset '" + drive_ + "' --start 0 --output '" + output_ + "'", "--start");
   expectRefused("simulate_drive", "", "--output");

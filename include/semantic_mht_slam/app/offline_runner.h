@@ -15,16 +15,23 @@ struct LoopClosureResult {
   LoopClosureRecord record;
 };
 
+/// A finished submap as a source of loop closures.
+struct SubmapResult {
+  std::size_t first_frame = 0;  ///< of the detector
+  SubmapCheck check;
+};
+
 /// What a run over a recording gave.
 struct RunResult {
-  std::vector<StampedPose> trajectory;  ///< T_map_base at every odometry sample that was used
+  std::vector<StampedPose> trajectory;         ///< T_map_base at every odometry sample that was used
   std::vector<StampedPose> online_trajectory;  ///< T_map_base as it was known at each of these moments
   std::vector<LoopClosureResult> loop_closures;
   InputCounters counters;
   std::vector<MixtureLandmark> landmarks;          ///< map frame, by rising id
   std::vector<DetectionAssociation> associations;  ///< of every detection that was used
   std::size_t submaps = 0;
-  std::vector<int> hypotheses;  ///< living ones after each odometry sample
+  std::vector<SubmapResult> submap_checks;  ///< of the submaps with frames; none without map
+  std::vector<int> hypotheses;              ///< living ones after each odometry sample
   std::vector<double> step_ms;  ///< wall time of each step: an odometry sample and the detections up to its stamp
   double seconds = 0.0;         ///< wall time of the run, without reading and writing files
 };

@@ -59,6 +59,13 @@ ClassTable loadClassTable(const SystemConfig& config, const std::string& folder)
 /// effective configuration can be read back from another folder.
 std::string locateClassTable(const SystemConfig& config, const std::string& folder);
 
+/// The submap evaluator's tree by the same rule.
+std::string locateEvaluatorTree(const SystemConfig& config, const std::string& folder);
+
+/// The configuration of the estimator with the path of the submap evaluator's tree as it can be opened from anywhere.
+/// Throws InputError if that tree is needed and cannot be used.
+SlamConfig loadableSlamConfig(const SystemConfig& config, const std::string& folder);
+
 /// A file of the package's configuration folder: beside an installed program, else in the source tree.
 std::string packageConfigFile(const std::string& name);
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,6 +11,7 @@
 #include "semantic_mht_slam/place/histogram_index.h"
 #include "semantic_mht_slam/place/keyframe.h"
 #include "semantic_mht_slam/place/loop_filter.h"
+#include "semantic_mht_slam/place/place_match.h"
 #include "semantic_mht_slam/place/scene_score.h"
 
 namespace semantic_mht_slam {
@@ -22,7 +22,7 @@ struct PaperChainConfig {
   double max_divergence = 0.1;  ///< of submaps, nats
   int scenes_per_submap = 5;
   double max_scene_distance = 0.35;  ///< of scene histograms
-  double recent_m = 50.0;            ///< driven since: too young to be a revisit
+  double recent_m = 80.0;            ///< driven since: too young to be a revisit; `PlaceRecognizer` sets its own
   double min_score = 1.45;           ///< of S_ncc + S_scene, in [-1, 2]
   CovisibilityConfig covisibility;
   SceneScoreConfig scene;
@@ -33,14 +33,15 @@ void describe(PaperChainConfig& config, Fields& fields);
 
 /// An earlier keyframe that may show the place of the query, with every score.
 struct PaperCandidate {
+  std::size_t place = 0;  ///< number of the earlier keyframe, in the order in which they were added
   std::size_t frame = 0;  ///< of the earlier keyframe
   int submap = 0;         ///< of the earlier keyframe
   double histogram_divergence = -1.0;
-  double scene_distance = -1.0;  ///< Euclidean distance of the scene histograms
-  double topology_score = -2.0;  ///< S_ncc
-  double scene_score = -1.0;     ///< S_scene; -1: not computed, S_ncc was too low for any
-  double loop_prob = -1.0;       ///< of the loop filter, after this query
-  std::string reason;            ///< why it was refused; empty: proposed for geometric verification
+  double scene_distance = -1.0;                ///< Euclidean distance of the scene histograms
+  double topology_score = -2.0;                ///< S_ncc
+  double scene_score = -1.0;                   ///< S_scene; -1: not computed, the sum cannot reach the threshold
+  double loop_prob = -1.0;                     ///< of the loop filter, after this query
+  PlaceRefusal refusal = PlaceRefusal::kNone;  ///< kNone: proposed for geometric verification
 
   double score() const { return topology_score + scene_score; }
 };
@@ -66,6 +67,7 @@ class PaperChain {
 
  private:
   struct Place {
+    std::size_t number = 0;
     std::size_t frame = 0;
     int submap = 0;
     double driven_m = 0.0;
@@ -88,6 +90,7 @@ class PaperChain {
   CovisibilityGraph graph_;
   HistogramIndex submap_index_;
   std::vector<PlacesOfSubmap> submaps_;
+  std::size_t places_ = 0;
   LoopFilter filter_;
 };
 

@@ -2,12 +2,20 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/place/pair_descriptor.h"
+#include "semantic_mht_slam/place/paper_chain.h"
 #include "semantic_mht_slam/place/scene_alignment.h"
 
 namespace semantic_mht_slam {
 
+/// Which earlier keyframes are verified geometrically.
+enum class PlaceChain {
+  kPairDistance,  ///< the most alike by `describePairs`, inside the drift gate
+  kPaper,         ///< those that `PaperChain` proposes
+};
+
 /// Parameters of `PlaceRecognizer`.
 struct PlaceConfig {
+  PlaceChain chain = PlaceChain::kPairDistance;
   double recent_m = 80.0;
   bool drift_gate = true;
   double gate_base_m = 15.0;
@@ -30,6 +38,7 @@ struct PlaceConfig {
   double agree_rad = 0.06;
   double support_reach_m = 60.0;
   PairDescriptorConfig descriptor;
+  PaperChainConfig paper;
   SceneAlignmentConfig alignment;
 };
 

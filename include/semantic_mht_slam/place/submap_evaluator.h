@@ -12,7 +12,7 @@ namespace semantic_mht_slam {
 
 /// Which submaps are searched for loop closures.
 struct SubmapEvaluatorConfig {
-  bool check_all = false;
+  bool check_all = true;
   std::string tree = "submap_evaluator.yaml";
 };
 

@@ -7,7 +7,9 @@
 
 #include "semantic_mht_slam/graph/pose_graph.h"
 #include "semantic_mht_slam/graph/trajectory_correction.h"
+#include "semantic_mht_slam/map/submap.h"
 #include "semantic_mht_slam/place/place_recognizer.h"
+#include "semantic_mht_slam/place/submap_evaluator.h"
 #include "semantic_mht_slam/slam/keyframes.h"
 #include "semantic_mht_slam/slam/loop_closure_record.h"
 #include "semantic_mht_slam/slam/revisit_search.h"
@@ -25,6 +27,7 @@ struct BackEndConfig {
   double loop_floor_m = 0.1;
   double loop_floor_rad = 0.005;
   KeyframeConfig keyframe;
+  SubmapEvaluatorConfig evaluator;  ///< `tree` is opened as it stands
   PlaceConfig place;
   RevisitConfig revisit;
   PoseGraphConfig graph;
@@ -39,19 +42,27 @@ struct SubmapPrediction {
   double driven_m = 0.0;  ///< up to the newest keyframe
 };
 
+/// Whether a finished submap was searched for places seen before.
+struct SubmapCheck {
+  int first_keyframe = 0;
+  bool is_checked = false;
+  SubmapEvaluation evaluation;
+};
+
 /// Ties finished submaps together: keyframes and landmarks go into the pose graph, places that are seen again become
 /// loop closures, and landmarks that turn out to be the same become one.
 class BackEnd {
  public:
+  /// Throws InputError if the evaluator's tree is needed and cannot be used.
   BackEnd(const BackEndConfig& config, const ClassTable& classes);
 
   /// For a submap that begins at `T_odom_submap`.
   SubmapPrediction predict(const Pose& T_odom_submap) const;
 
-  /// Takes the keyframes of a finished submap and optimises; `alignment` is against the earlier map in the predicted
-  /// frame. Returns the landmarks that were found to be the same.
-  std::vector<MergedLandmark> add(std::vector<MapKeyframe> keyframes, const std::vector<MergedLandmark>& merged,
-                                  const std::optional<MapAlignment>& alignment, const SubmapPrediction& prediction);
+  /// Takes a finished submap with its keyframes and optimises; its alignment is in the frame of `prediction`. Returns the
+  /// landmarks that were found to be the same.
+  std::vector<MergedLandmark> add(std::vector<MapKeyframe> keyframes, const Submap& submap,
+                                  const SubmapPrediction& prediction);
 
   /// Solves the whole graph.
   void finish();
@@ -68,12 +79,15 @@ class BackEnd {
   /// Every closure that was looked at, in the order of the query.
   const std::vector<LoopClosureRecord>& closures() const { return closures_; }
 
+  /// Every finished submap, by its index.
+  const std::vector<SubmapCheck>& checks() const { return checks_; }
+
   /// Corrected position of a landmark, map frame; empty if it is not in the graph.
   std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;
 
  private:
   void addNode(const MapKeyframe& keyframe);
-  void recognisePlaces(std::size_t first_new);
+  void recognisePlaces(std::size_t first_new, const Submap& submap);
   void closeByHypotheses(std::size_t first_new, const MapAlignment& alignment, const SubmapPrediction& prediction);
   void findRevisitsOf(std::size_t first_new);
   void close(std::vector<LoopClosureRecord> records);
@@ -85,10 +99,11 @@ class BackEnd {
   BackEndConfig config_;
   ClassTable classes_;
   PoseGraph graph_;
+  SubmapEvaluator evaluator_;
   PlaceRecognizer places_;
   std::vector<int> keyframe_of_place_;
   KeyframeMap map_;
-  std::vector<int> first_keyframe_of_submap_;
+  std::vector<SubmapCheck> checks_;
   std::vector<LoopClosureRecord> closures_;
   std::vector<int> closure_of_loop_;  ///< index into `closures_`, by loop of the graph
   double closed_at_m_ = 0.0;          ///< distance driven at the last accepted closure

@@ -21,6 +21,15 @@ enum class ClosureSource {
 /// Name for files: `place`, `hypotheses` or `revisit`.
 std::string nameOf(ClosureSource source);
 
+/// What place recognition knows of a candidate; unknown: as below.
+struct PlaceScores {
+  double histogram_divergence = -1.0;  ///< of the two submaps' classes, in [0, ln 2]
+  double descriptor_score = -1.0;      ///< in [0, 1]
+  double topology_score = -2.0;        ///< in [-1, 1]
+  double scene_score = -1.0;           ///< in [0, 1]
+  double loop_prob = -1.0;             ///< in [0, 1]
+};
+
 /// A place that was recognised, or a candidate that was refused.
 struct LoopClosureRecord {
   ClosureSource source = ClosureSource::kRevisit;
@@ -28,7 +37,8 @@ struct LoopClosureRecord {
   int match_keyframe = 0;
   bool is_accepted = false;
   std::string reason;  ///< why it was refused; empty if accepted
-  double score = 0.0;  ///< of the check that decided
+  double score = 0.0;  ///< of the check that decided; of a place, -1 if it did not come to the geometric check
+  PlaceScores place;   ///< only of kPlace
   int inliers = 0;     ///< landmark pairs that agree
   Pose T_match_query;
   PoseCov cov = PoseCov::Identity();                     ///< of T_match_query

@@ -44,6 +44,7 @@ void describe(SlamConfig& config, Fields& fields);
 /// result whatever the order in which odometry and detections arrive.
 class Slam {
  public:
+  /// Throws InputError if the submap evaluator's tree is needed and cannot be used.
   Slam(const SlamConfig& config, const ClassTable& classes);
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
