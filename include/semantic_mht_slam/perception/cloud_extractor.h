@@ -1,0 +1,27 @@
+#pragma once
+
+#include "semantic_mht_slam/models/label_map.h"
+#include "semantic_mht_slam/models/labelled_cloud.h"
+#include "semantic_mht_slam/perception/extracted_object.h"
+#include "semantic_mht_slam/perception/extraction_config.h"
+
+namespace semantic_mht_slam {
+
+/// Objects of a labelled cloud, class by class in the order of the table: Euclidean clusters, vertical classes split
+/// and merged by their axes, small clusters removed. An object moves if more than half of its points have a moving
+/// label. Points that are not finite or out of range and labels that the map lacks are left out and counted. Throws
+/// std::invalid_argument if the cloud has not one label a point or the configuration another number of classes than the
+/// map names.
+Extraction extractObjects(const LabelledCloud& cloud, const LabelMap& labels, const ExtractionConfig& config);
+
+/// The points of one class, and the objects in them.
+struct ClassPoints {
+  std::vector<Eigen::Vector3f> points_m;
+  std::vector<bool> is_moving;
+};
+
+/// Clusters of one class's points: Euclidean, and for vertical classes split and merged by their axes.
+std::vector<Cluster> clustersOf(const std::vector<Eigen::Vector3f>& points_m, const ClusterConfig& rule,
+                                const VerticalConfig& vertical);
+
+}  // namespace semantic_mht_slam
