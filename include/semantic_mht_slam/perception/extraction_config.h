@@ -30,7 +30,7 @@ void describe(VerticalConfig& config, Fields& fields);
 
 /// Where objects lie in a label image, and how the lidar's points are assigned to them.
 struct ImageConfig {
-  int close_px = 3;             ///< morphological closing of a class's mask, edge of the square
+  int close_px = 9;             ///< closing of a class's mask, edge of the square: the gap between two scan rows
   int min_pixels = 40;          ///< connected components below this are noise
   int border_px = 2;            ///< width of the rim of a blob into which background bleeds
   double max_rim_share = 0.6;   ///< clusters behind another one with more of their points in the rim are background
