@@ -34,28 +34,30 @@ Matrix parseMatrix(const std::string& where, std::string_view key, std::string_v
   return matrix;
 }
 
+void requireRotation(const std::string& where, std::string_view key, const Eigen::Matrix3d& rotation) {
+  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (error > 0.01 || rotation.determinant() < 0.0) {
+    throw InputError(where + ": the 3x3 part of " + std::string(key) + " is no rotation");
+  }
+}
+
+enum class Kind { kProjection, kRotation };
+
 /// The matrix of the last line that begins with `key`; empty if there is none.
 template <class Matrix>
-std::optional<Matrix> findMatrix(const std::string& path, const std::string& content, std::string_view key) {
+std::optional<Matrix> findMatrix(const std::string& path, const std::string& content, std::string_view key, Kind kind) {
   std::optional<Matrix> matrix;
   forEachLine(content, [&](int line, std::string_view text) {
-    if (text.substr(0, key.size()) == key) matrix = parseMatrix<Matrix>(at(path, line), key, text.substr(key.size()));
+    if (text.substr(0, key.size()) != key) return;
+    matrix = parseMatrix<Matrix>(at(path, line), key, text.substr(key.size()));
+    if (kind == Kind::kRotation) requireRotation(at(path, line), key, matrix->template leftCols<3>());
   });
   return matrix;
 }
 
-void requireRotation(const std::string& path, std::string_view key, const Eigen::Matrix3d& rotation) {
-  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (error > 0.01 || rotation.determinant() < 0.0) {
-    throw InputError(path + ": the 3x3 part of " + std::string(key) + " is no rotation");
-  }
-}
-
 std::optional<Pose> findTransform(const std::string& path, const std::string& content, std::string_view key) {
-  const std::optional<Matrix34> matrix = findMatrix<Matrix34>(path, content, key);
-  if (!matrix) return std::nullopt;
-  requireRotation(path, key, matrix->leftCols<3>());
-  return Pose::fromMatrix(*matrix);
+  const std::optional<Matrix34> matrix = findMatrix<Matrix34>(path, content, key, Kind::kRotation);
+  return matrix ? std::optional(Pose::fromMatrix(*matrix)) : std::nullopt;
 }
 
 }  // namespace
@@ -68,14 +70,13 @@ Pose readCalibration(const std::string& path) {
 
 Camera readCamera(const std::string& path) {
   const std::string content = readFile(path);
-  const std::optional<Matrix34> projection = findMatrix<Matrix34>(path, content, "P2:");
+  const std::optional<Matrix34> projection = findMatrix<Matrix34>(path, content, "P2:", Kind::kProjection);
   if (!projection) throw InputError(path + ": no line begins with P2: (projection of the left colour camera)");
   std::optional<Pose> T_cam0_velodyne = findTransform(path, content, "Tr_velo_to_cam:");
   if (!T_cam0_velodyne) T_cam0_velodyne = findTransform(path, content, kKey);
   if (!T_cam0_velodyne) throw InputError(path + ": no line begins with Tr: or Tr_velo_to_cam:");
   Pose rectification;
-  if (const std::optional<Matrix3> matrix = findMatrix<Matrix3>(path, content, "R0_rect:")) {
-    requireRotation(path, "R0_rect:", *matrix);
+  if (const std::optional<Matrix3> matrix = findMatrix<Matrix3>(path, content, "R0_rect:", Kind::kRotation)) {
     rectification.rotation = Eigen::Quaterniond(Eigen::Matrix3d(*matrix)).normalized();
   }
   return {*projection, rectification * *T_cam0_velodyne};

@@ -11,10 +11,10 @@ ClusterConfig defaultsFor(const ClassInfo& info) {
     config.is_vertical = true;
   } else if (info.is_static) {
     config.tolerance_m = 0.6;
-    config.voxel_m = 0.25;
+    config.voxel_m = 0.3;
     config.min_points = 60;
   } else {
-    config.voxel_m = 0.12;
+    config.voxel_m = 0.15;
   }
   return config;
 }

@@ -42,7 +42,8 @@ void addBlobs(const cv::Mat1w& class_image, const cv::Rect& area, ClassIndex cla
   cv::morphologyEx(mask, closed, cv::MORPH_CLOSE, square);
   const int rim_px = 2 * config.border_px + 1;
   cv::Mat core;
-  cv::erode(closed, core, cv::getStructuringElement(cv::MORPH_RECT, {rim_px, rim_px}));
+  cv::erode(closed, core, cv::getStructuringElement(cv::MORPH_RECT, {rim_px, rim_px}), {-1, -1}, 1, cv::BORDER_CONSTANT,
+            cv::Scalar(0));
   cv::Mat1i components;
   cv::Mat1i statistics;
   cv::Mat1d centers;
