@@ -5,13 +5,13 @@
 #include <boost/program_options.hpp>
 
 #include "semantic_mht_slam/app/labelled_classes.h"
+#include "semantic_mht_slam/app/labelled_scans.h"
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/calibration_file.h"
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/scan_file.h"
 #include "semantic_mht_slam/io/text_file.h"
-#include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/perception/cloud_extractor.h"
 #include "semantic_mht_slam/perception/image_extractor.h"
 #include "semantic_mht_slam/perception/label_image_file.h"
@@ -56,17 +56,6 @@ po::options_description makeOptions(Arguments& arguments) {
   return options;
 }
 
-ExtractionConfig loadConfig(const Arguments& arguments, const ClassTable& classes) {
-  ExtractionConfig config(classes);
-  Fields fields;
-  describe(config, fields);
-  std::vector<Setting> settings;
-  if (!arguments.config.empty()) settings = readSettings(arguments.config);
-  for (const std::string& text : arguments.overrides) settings.push_back(parseOverride(text));
-  applySettings(settings, fields);
-  return config;
-}
-
 Extraction extract(const Arguments& arguments, const LabelMap& labels, const ExtractionConfig& config) {
   if (arguments.image_labels.empty()) {
     return extractObjects(readLabelledScan(arguments.scan, arguments.labels), labels, config);
@@ -101,7 +90,9 @@ int run(int argc, char** argv) {
   if (arguments.output.empty()) throw InputError("--output is needed");
 
   const LabelledClasses classes = loadLabelledClasses(arguments.classes);
-  const ExtractionConfig config = loadConfig(arguments, classes.classes);
+  std::vector<Setting> overrides;
+  for (const std::string& text : arguments.overrides) overrides.push_back(parseOverride(text));
+  const ExtractionConfig config = loadExtractionConfig(classes.classes, arguments.config, overrides);
   const Extraction extraction = extract(arguments, classes.labels, config);
   reportProblems(extraction, arguments);
   writeFileAtomically(arguments.output, formatObjects({extraction.detections()}, classes.classes));
