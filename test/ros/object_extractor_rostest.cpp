@@ -104,14 +104,11 @@ TEST_F(ObjectExtractorNodeTest, LabelledCloudBecomesObjectsAndBadOnesAreToldByTo
   bad["field 'data'"].data.pop_back();
   extractor.arrays.clear();
   for (const auto& [problem, message] : bad) {
-    for (int i = 0; i < 5; ++i) extractor.publish(message);
-  }
-  for (const auto& [problem, message] : bad) {
     const std::string expected = problem;
+    extractor.publish(message);
     EXPECT_TRUE(spinUntil([&] { return warnings_.count(expected) > 0; })) << expected << "\n" << warnings_.all();
-    EXPECT_EQ(warnings_.count(expected), 1) << "must be throttled: " << expected;
+    for (int i = 0; i < 3; ++i) extractor.publish(message);
   }
-  EXPECT_EQ(warnings_.count("/by_cloud/cloud"), static_cast<int>(bad.size())) << warnings_.all();
 
   LabelledCloud odd = cloud_;
   odd.points_m.emplace_back(std::nanf(""), 0.0F, 0.0F);
@@ -124,6 +121,8 @@ TEST_F(ObjectExtractorNodeTest, LabelledCloudBecomesObjectsAndBadOnesAreToldByTo
   EXPECT_EQ(extractor.arrays[0].objects.size(), 3U);
   EXPECT_TRUE(spinUntil([&] { return warnings_.count("12345 (1 points)") == 1; })) << warnings_.all();
   EXPECT_TRUE(spinUntil([&] { return warnings_.count("1 points that are not finite") == 1; })) << warnings_.all();
+  EXPECT_EQ(warnings_.count("/by_cloud/cloud"), static_cast<int>(bad.size()) + 2) << "each problem is told once\n"
+                                                                                  << warnings_.all();
 }
 
 TEST_F(ObjectExtractorNodeTest, NodeletDoesTheSameWithItsOwnParameters) {

@@ -41,7 +41,7 @@ class SegmentationNodeTest : public ::testing::Test {
     const std::string table = "_label_map:=" + folder_ / "table.yaml";
     child_ = ::fork();
     if (child_ == 0) {
-      ::execl(program.c_str(), program.c_str(), model.c_str(), table.c_str(), nullptr);
+      ::execl(program.c_str(), program.c_str(), model.c_str(), table.c_str(), "__name:=segmentation_node", nullptr);
       ::_exit(127);
     }
   }
