@@ -59,6 +59,7 @@ ExtractionConfig loadExtractionConfig(const ClassTable& classes, const std::stri
   if (!yaml_path.empty()) settings = readSettings(yaml_path);
   settings.insert(settings.end(), overrides.begin(), overrides.end());
   applySettings(settings, fields);
+  requireUsable(config);
   return config;
 }
 

@@ -27,6 +27,7 @@ ObjectExtractorSetup makeObjectExtractorSetup(const std::vector<Setting>& settin
   Fields fields;
   describe(setup.config, fields);
   applySettings(settings, fields);
+  requireUsable(setup.config.extraction);
   if (setup.config.label_field.empty()) throw ConfigError({"label_field is empty"});
   return setup;
 }

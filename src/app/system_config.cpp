@@ -93,10 +93,11 @@ std::string parameterReference() {
          toMarkdown(system) + "\n# Class tables\n\nKeys of one entry of the list `classes`.\n" +
          toMarkdown(class_entry) + "\n# Scenarios\n\nKeys of the scenario files of `simulate_drive`.\n" +
          toMarkdown(scenario_fields) +
-         "\n# Object extraction\n\nKeys of `config/extraction.yaml` and, as private parameters, of "
-         "`object_extractor_node` and its nodelet. `classes.NAME` stands for each\nclass of the table; the defaults "
-         "shown "
-         "are those of classes that keep their place, `config/extraction.yaml` has the others'.\n" +
+         "\n# Object extraction\n\nPrivate parameters of `object_extractor_node` and its nodelet; those from "
+         "`min_range` on are the keys of "
+         "`config/extraction.yaml`\nand of `extract_objects --set`. `classes.NAME` stands for each class of the table; "
+         "the "
+         "defaults shown are those of classes that\nkeep their place, `config/extraction.yaml` has the others'.\n" +
          toMarkdown(extractor_fields) + "\n# Segmentation\n\nPrivate parameters of `segmentation_node`.\n" +
          toMarkdown(segmentation_fields);
 }

@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/perception/extraction_config.h"
 
+#include "semantic_mht_slam/common/error.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -67,6 +69,16 @@ void describe(ExtractionConfig& config, Fields& fields) {
   for (std::size_t i = 0; i < config.classes.size(); ++i) {
     fields.group("classes." + config.class_names[i], config.classes[i]);
   }
+}
+
+void requireUsable(const ExtractionConfig& config) {
+  std::vector<std::string> problems;
+  if (config.min_range_m >= config.max_range_m) problems.push_back("min_range is not below max_range");
+  for (std::size_t i = 0; i < config.classes.size(); ++i) {
+    if (config.classes[i].voxel_m <= 0.5 * config.classes[i].tolerance_m) continue;
+    problems.push_back("classes." + config.class_names[i] + ".voxel is above half of the tolerance");
+  }
+  if (!problems.empty()) throw ConfigError(problems);
 }
 
 }  // namespace semantic_mht_slam

@@ -66,6 +66,7 @@ Extraction extract(const Arguments& arguments, const LabelMap& labels, const Ext
 
 void reportProblems(const Extraction& extraction, const Arguments& arguments) {
   const bool is_image = arguments.labels.empty();
+  if (extraction.points == 0) std::fprintf(stderr, "%s: the scan has no points\n", arguments.scan.c_str());
   const std::string unknown = extraction.describeUnknownLabels(is_image ? "pixels" : "points");
   if (!unknown.empty()) {
     std::fprintf(stderr, "%s: skipped %s\n", (is_image ? arguments.image_labels : arguments.labels).c_str(),

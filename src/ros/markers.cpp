@@ -51,7 +51,7 @@ visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& 
 
 visualization_msgs::MarkerArray toBoxMarkers(const std::vector<ExtractedObject>& objects, const ClassTable& classes,
                                              const std_msgs::Header& header) {
-  constexpr float kOpacity = 0.6F;  // the points inside remain visible
+  constexpr float kOpacity = 0.45F;  // the points inside remain visible
   constexpr double kThinnest_m = 0.1;
   visualization_msgs::MarkerArray array;
   visualization_msgs::Marker marker;

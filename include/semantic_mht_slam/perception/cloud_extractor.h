@@ -10,8 +10,8 @@ namespace semantic_mht_slam {
 /// Objects of a labelled cloud, class by class in the order of the table: Euclidean clusters, vertical classes split
 /// and merged by their axes, small clusters removed. An object moves if more than half of its points have a moving
 /// label. Points that are not finite or out of range and labels that the map lacks are left out and counted. Throws
-/// std::invalid_argument if the cloud has not one label a point or the configuration another number of classes than the
-/// map names.
+/// std::invalid_argument if the cloud has not one label a point, std::out_of_range if the map names a class that the
+/// configuration lacks.
 Extraction extractObjects(const LabelledCloud& cloud, const LabelMap& labels, const ExtractionConfig& config);
 
 /// The points of one class, and the objects in them.

@@ -59,4 +59,8 @@ struct ExtractionConfig {
 
 void describe(ExtractionConfig& config, Fields& fields);
 
+/// Throws ConfigError naming every class whose voxels are larger than half its tolerance, since neighbours would then
+/// fall apart, and a range that is empty.
+void requireUsable(const ExtractionConfig& config);
+
 }  // namespace semantic_mht_slam

@@ -21,7 +21,7 @@ struct ImageBlobs {
 
 /// Finds the blobs: per class the mask is closed, its 8-connected components of at least `min_pixels` are blobs. Pixels
 /// that closing alone has added join components but belong to none. Throws std::invalid_argument unless the image has
-/// one label a pixel.
+/// one label a pixel, std::out_of_range if the map names a class beyond `classes`.
 ImageBlobs findBlobs(const LabelImage& image, const LabelMap& labels, int classes, const ImageConfig& config);
 
 }  // namespace semantic_mht_slam
