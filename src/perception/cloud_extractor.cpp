@@ -9,6 +9,11 @@
 namespace semantic_mht_slam {
 namespace {
 
+struct ClassPoints {
+  std::vector<Eigen::Vector3f> points_m;
+  std::vector<bool> is_moving;
+};
+
 void requireMatching(const LabelledCloud& cloud) {
   if (cloud.points_m.size() != cloud.labels.size()) {
     throw std::invalid_argument("extractObjects: " + std::to_string(cloud.points_m.size()) + " points and " +
@@ -44,12 +49,6 @@ std::vector<ClassPoints> sortByClass(const LabelledCloud& cloud, const LabelMap&
   return points;
 }
 
-bool isMoving(const ClassPoints& points, const Cluster& cluster) {
-  const auto moving = std::count_if(cluster.begin(), cluster.end(),
-                                    [&](int i) { return points.is_moving[static_cast<std::size_t>(i)]; });
-  return 2 * static_cast<std::size_t>(moving) > cluster.size();
-}
-
 }  // namespace
 
 std::vector<Cluster> clustersOf(const std::vector<Eigen::Vector3f>& points_m, const ClusterConfig& rule,
@@ -77,7 +76,7 @@ Extraction extractObjects(const LabelledCloud& cloud, const LabelMap& labels, co
         ++extraction.small_clusters;
         continue;
       }
-      object.detection.is_moving = isMoving(points, cluster);
+      object.detection.is_moving = isMajority(points.is_moving, cluster);
       object.detection.row = static_cast<int>(extraction.objects.size());
       extraction.objects.push_back(object);
     }

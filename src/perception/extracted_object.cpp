@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/perception/extracted_object.h"
 
+#include <algorithm>
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -54,6 +56,12 @@ ExtractedObject measureObject(const std::vector<Eigen::Vector3f>& points_m, cons
   detection.points = static_cast<int>(cluster.size());
   detection.score = n / (n + static_cast<double>(rule.min_points));
   return object;
+}
+
+bool isMajority(const std::vector<bool>& flags, const Cluster& cluster) {
+  const auto set =
+      std::count_if(cluster.begin(), cluster.end(), [&](int i) -> bool { return flags[static_cast<std::size_t>(i)]; });
+  return 2 * static_cast<std::size_t>(set) > cluster.size();
 }
 
 bool isLargeEnough(const ExtractedObject& object, const ClusterConfig& config) {

@@ -138,12 +138,6 @@ Cluster gatedByRange(const SeenPoints& points, const Candidate& candidate, const
   return gated;
 }
 
-bool isMoving(const SeenPoints& points, const Cluster& cluster) {
-  const auto moving = std::count_if(cluster.begin(), cluster.end(),
-                                    [&](int i) { return points.is_moving[static_cast<std::size_t>(i)]; });
-  return 2 * static_cast<std::size_t>(moving) > cluster.size();
-}
-
 /// Adds the objects of one class.
 void addObjects(const SeenPoints& points, ClassIndex class_index, const ExtractionConfig& config,
                 Extraction& extraction) {
@@ -163,7 +157,7 @@ void addObjects(const SeenPoints& points, ClassIndex class_index, const Extracti
       ++extraction.small_clusters;
       continue;
     }
-    object.detection.is_moving = isMoving(points, cluster);
+    object.detection.is_moving = isMajority(points.is_moving, cluster);
     object.detection.row = static_cast<int>(extraction.objects.size());
     extraction.objects.push_back(object);
   }

@@ -65,16 +65,15 @@ Extraction extract(const Arguments& arguments, const LabelMap& labels, const Ext
 }
 
 void reportProblems(const Extraction& extraction, const Arguments& arguments) {
+  const auto report = [](const std::string& file, const std::string& problem) {
+    printProblem("extract_objects", file + ": " + problem);
+  };
   const bool is_image = arguments.labels.empty();
-  if (extraction.points == 0) std::fprintf(stderr, "%s: the scan has no points\n", arguments.scan.c_str());
+  if (extraction.points == 0) report(arguments.scan, "the scan has no points");
   const std::string unknown = extraction.describeUnknownLabels(is_image ? "pixels" : "points");
-  if (!unknown.empty()) {
-    std::fprintf(stderr, "%s: skipped %s\n", (is_image ? arguments.image_labels : arguments.labels).c_str(),
-                 unknown.c_str());
-  }
+  if (!unknown.empty()) report(is_image ? arguments.image_labels : arguments.labels, "skipped " + unknown);
   if (extraction.points_not_finite > 0) {
-    std::fprintf(stderr, "%s: skipped %zu points that are not finite\n", arguments.scan.c_str(),
-                 extraction.points_not_finite);
+    report(arguments.scan, "skipped " + std::to_string(extraction.points_not_finite) + " points that are not finite");
   }
 }
 

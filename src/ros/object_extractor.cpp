@@ -80,7 +80,7 @@ void ObjectExtractor::extractFromCloud(const sensor_msgs::PointCloud2& cloud) {
   const std::string topic = cloud_subscriber_.getTopic();
   try {
     const LabelledCloud labelled = fromMessage(cloud, setup_.config.label_field);
-    publish(cloud.header, extractObjects(labelled, setup_.labelled.labels, setup_.config.extraction), topic, "points");
+    publish(cloud.header, extractObjects(labelled, setup_.labelled.labels, setup_.config.extraction), topic);
   } catch (const InputError& error) {
     warnings_.warn(topic + ": message skipped: " + error.what());
   }
@@ -114,19 +114,20 @@ void ObjectExtractor::extractChecked(const sensor_msgs::Image& image, const sens
       fromMessage(transforms_.lookupTransform(info.header.frame_id, cloud.header.frame_id, ros::Time(0)).transform);
   const Camera camera = onTopic(info_topic, [&] { return fromMessage(info, T_camera_cloud); });
   publish(cloud.header, extractObjects(points, labels, camera, setup_.labelled.labels, setup_.config.extraction),
-          image_topic, "pixels");
+          image_topic);
 }
 
 void ObjectExtractor::publish(const std_msgs::Header& header, const Extraction& extraction,
-                              const std::string& label_topic, const std::string& unit) {
-  const std::string unknown = extraction.describeUnknownLabels(unit);
-  if (!unknown.empty())
-    warnings_.warn(label_topic + ": field '" + (unit == "points" ? setup_.config.label_field : "data") + "': skipped " +
-                   unknown);
+                              const std::string& label_topic) {
+  const bool is_cloud = setup_.config.source == LabelSource::kCloud;
+  const std::string unknown = extraction.describeUnknownLabels(is_cloud ? "points" : "pixels");
+  if (!unknown.empty()) {
+    const std::string field = is_cloud ? setup_.config.label_field : "data";
+    warnings_.warn(label_topic + " unknown labels", label_topic + ": field '" + field + "': skipped " + unknown);
+  }
   if (extraction.points_not_finite > 0) {
-    const std::string cloud_topic = unit == "points" ? label_topic : cloud_input_.getTopic();
-    warnings_.warn(cloud_topic + ": fields 'x', 'y', 'z': skipped " + std::to_string(extraction.points_not_finite) +
-                   " points that are not finite");
+    warnings_.warn((is_cloud ? label_topic : cloud_input_.getTopic()) + ": fields 'x', 'y', 'z': skipped " +
+                   std::to_string(extraction.points_not_finite) + " points that are not finite");
   }
   SemanticObjectArray message =
       toMessage(toStamp(header.stamp), header.frame_id, extraction.detections(), setup_.labelled.classes);

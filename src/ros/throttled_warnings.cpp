@@ -14,12 +14,11 @@ constexpr std::size_t kMostKinds = 1000;  // texts hold what others send: bounde
 
 }  // namespace
 
-void ThrottledWarnings::warn(const std::string& text) {
-  std::string kind;
-  std::copy_if(text.begin(), text.end(), std::back_inserter(kind),
-               [](unsigned char c) { return std::isdigit(c) == 0; });
+void ThrottledWarnings::warn(const std::string& kind, const std::string& text) {
+  std::string key;
+  std::copy_if(kind.begin(), kind.end(), std::back_inserter(key), [](unsigned char c) { return std::isdigit(c) == 0; });
   if (last_.size() >= kMostKinds) last_.clear();
-  ros::WallTime& last = last_[kind];  // by wall time: a clock that stands still is one of the things to warn about
+  ros::WallTime& last = last_[key];  // by wall time: a clock that stands still is one of the things to warn about
   const ros::WallTime now = ros::WallTime::now();
   if (now - last < ros::WallDuration(kPeriod_s)) return;
   last = now;

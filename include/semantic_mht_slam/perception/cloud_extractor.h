@@ -14,12 +14,6 @@ namespace semantic_mht_slam {
 /// configuration lacks.
 Extraction extractObjects(const LabelledCloud& cloud, const LabelMap& labels, const ExtractionConfig& config);
 
-/// The points of one class, and the objects in them.
-struct ClassPoints {
-  std::vector<Eigen::Vector3f> points_m;
-  std::vector<bool> is_moving;
-};
-
 /// Clusters of one class's points: Euclidean, and for vertical classes split and merged by their axes.
 std::vector<Cluster> clustersOf(const std::vector<Eigen::Vector3f>& points_m, const ClusterConfig& rule,
                                 const VerticalConfig& vertical);

@@ -46,6 +46,9 @@ struct Extraction {
 ExtractedObject measureObject(const std::vector<Eigen::Vector3f>& points_m, const Cluster& cluster,
                               ClassIndex class_index, const ExtractionConfig& config);
 
+/// Whether a flag is set for more than half of a cluster's points.
+bool isMajority(const std::vector<bool>& flags, const Cluster& cluster);
+
 /// The size rule: enough points, and high enough.
 bool isLargeEnough(const ExtractedObject& object, const ClusterConfig& config);
 

@@ -40,8 +40,7 @@ class ObjectExtractor {
                         const sensor_msgs::PointCloud2ConstPtr& cloud);
   void extractChecked(const sensor_msgs::Image& image, const sensor_msgs::CameraInfo& info,
                       const sensor_msgs::PointCloud2& cloud);
-  void publish(const std_msgs::Header& header, const Extraction& extraction, const std::string& label_topic,
-               const std::string& unit);
+  void publish(const std_msgs::Header& header, const Extraction& extraction, const std::string& label_topic);
   void subscribeToImages();
   void warnIfNothingMatches(const ros::WallTimerEvent& event);
 
