@@ -10,6 +10,8 @@ PACKAGES=(
   libtf2-ros-dev libtf2-msgs-dev tf2-tools python3-tf2-ros
   librosbag-dev python3-rosbag libvisualization-msgs-dev libnav-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-msgs python3-visualization-msgs
+  libmessage-filters-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev
+  libpcl-dev libopencv-dev
   libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
   libpcl-dev
   libflann-dev liblz4-dev libopencv-dev

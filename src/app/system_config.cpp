@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "semantic_mht_slam/app/object_extractor_config.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/simulation/scenario.h"
@@ -90,13 +91,29 @@ std::string parameterReference() {
   Scenario scenario;
   Fields scenario_fields;
   describe(scenario, scenario_fields);
+  ObjectExtractorConfig extractor;
+  ClassInfo any_class;
+  any_class.name = "NAME";
+  extractor.extraction = ExtractionConfig(ClassTable({any_class}, ""));
+  Fields extractor_fields;
+  describe(extractor, extractor_fields);
+  SegmentationNodeConfig segmentation;
+  Fields segmentation_fields;
+  describe(segmentation, segmentation_fields);
   return "<!-- made by the program parameter_reference; do not edit -->\n# Parameters\n\n"
          "Keys of `config/kitti.yaml`, of `slam_offline --set KEY=VALUE` and, as private parameters with `/` in place "
          "of "
          "`.`,\nof `slam_node`.\n" +
          toMarkdown(system) + "\n# Class tables\n\nKeys of one entry of the list `classes`.\n" +
          toMarkdown(class_entry) + "\n# Scenarios\n\nKeys of the scenario files of `simulate_drive`.\n" +
-         toMarkdown(scenario_fields);
+         toMarkdown(scenario_fields) +
+         "\n# Object extraction\n\nPrivate parameters of `object_extractor_node` and its nodelet; those from "
+         "`min_range` on are the keys of "
+         "`config/extraction.yaml`\nand of `extract_objects --set`. `classes.NAME` stands for each class of the table; "
+         "the "
+         "defaults shown are those of classes that\nkeep their place, `config/extraction.yaml` has the others'.\n" +
+         toMarkdown(extractor_fields) + "\n# Segmentation\n\nPrivate parameters of `segmentation_node`.\n" +
+         toMarkdown(segmentation_fields);
 }
 
 Setting parseOverride(const std::string& text) {

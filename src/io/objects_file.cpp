@@ -10,11 +10,11 @@
 namespace semantic_mht_slam {
 namespace {
 
-enum Column : std::size_t { kFrame, kClass, kX, kY, kZ, kScore, kCov, kSize = kCov + 6, kEnd = kSize + 3 };
+enum Column : std::size_t { kFrame, kClass, kX, kY, kZ, kScore, kCov, kSize = kCov + 6, kPoints = kSize + 3, kMoving };
 
 const std::vector<std::string> kRequired = {"frame", "class", "x", "y", "z"};
-const std::vector<std::string> kOptional = {"score", "sxx", "sxy",    "sxz",    "syy",
-                                            "syz",   "szz", "size_x", "size_y", "size_z"};
+const std::vector<std::string> kOptional = {"score", "sxx",    "sxy",    "sxz",    "syy",    "syz",
+                                            "szz",   "size_x", "size_y", "size_z", "points", "moving"};
 
 /// The numbers of a group of columns that is given whole or not at all.
 template <std::size_t N>
@@ -34,6 +34,12 @@ std::optional<std::array<double, N>> readGroup(const CsvRow& row, std::size_t fi
   return numbers;
 }
 
+int readCount(const CsvRow& row, std::size_t column, int largest) {
+  const std::int64_t number = row.integer(column);
+  if (number < 0 || number > largest) row.fail(column, "not in [0, " + std::to_string(largest) + "]");
+  return static_cast<int>(number);
+}
+
 Detection readDetection(const CsvRow& row, ClassIndex class_index) {
   Detection detection;
   detection.class_index = class_index;
@@ -50,6 +56,8 @@ Detection readDetection(const CsvRow& row, ClassIndex class_index) {
     const Eigen::Vector3d size_m((*size)[0], (*size)[1], (*size)[2]);
     if (!size_m.isZero(0.0)) detection.size_m = size_m;
   }
+  if (row.has(kPoints)) detection.points = readCount(row, kPoints, 1 << 30);
+  if (row.has(kMoving)) detection.is_moving = readCount(row, kMoving, 1) == 1;
   return detection;
 }
 
@@ -58,6 +66,8 @@ struct Needed {
   bool score = false;
   bool cov = false;
   bool size = false;
+  bool points = false;
+  bool moving = false;
 };
 
 std::string formatOptional(const Detection& detection, const Needed& needed) {
@@ -71,6 +81,8 @@ std::string formatOptional(const Detection& detection, const Needed& needed) {
   if (needed.size) {
     for (int i = 0; i < 3; ++i) text += "," + (detection.size_m ? formatFixed((*detection.size_m)[i], 3) : "");
   }
+  if (needed.points) text += "," + (detection.points ? std::to_string(*detection.points) : "");
+  if (needed.moving) text += detection.is_moving ? ",1" : ",0";
   return text + "\n";
 }
 
@@ -103,12 +115,16 @@ std::string formatObjects(const std::vector<Detections>& detections, const Class
       needed.score |= detection.score.has_value();
       needed.cov |= detection.cov_m2.has_value();
       needed.size |= detection.size_m.has_value();
+      needed.points |= detection.points.has_value();
+      needed.moving |= detection.is_moving;
     }
   }
   std::string text = "frame,class,x,y,z";
   text += needed.score ? ",score" : "";
   text += needed.cov ? ",sxx,sxy,sxz,syy,syz,szz" : "";
-  text += needed.size ? ",size_x,size_y,size_z\n" : "\n";
+  text += needed.size ? ",size_x,size_y,size_z" : "";
+  text += needed.points ? ",points" : "";
+  text += needed.moving ? ",moving\n" : "\n";
   for (std::size_t frame = 0; frame < detections.size(); ++frame) {
     for (const Detection& detection : detections[frame]) {
       text += std::to_string(frame) + "," + classes[detection.class_index].name;

@@ -7,39 +7,26 @@
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/text_file.h"
 
+#include "yaml_document.h"
+
 namespace semantic_mht_slam {
 namespace {
 
 constexpr int kMaxDepth = 20;
 
-std::string origin(const std::string& path, const YAML::Node& node) {
-  return at(path, node.Mark().line + 1);
-}
-
-YAML::Node load(const std::string& path) {
-  const std::string content = readFile(path);
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(content);
-    if (documents.size() > 1) throw InputError(path + ": holds more than one YAML document");
-    return documents.empty() ? YAML::Node() : documents.front();
-  } catch (const YAML::Exception& error) {
-    throw InputError(at(path, error.mark.line + 1) + ": not YAML: " + error.msg);
-  }
-}
-
 void flatten(const std::string& path, const YAML::Node& node, const std::string& prefix, std::vector<Setting>& settings,
              int depth = 0) {
   if (depth > kMaxDepth) throw InputError(path + ": '" + prefix + "' is nested too deeply, or in itself");
-  if (!node.IsMap()) throw InputError(origin(path, node) + ": '" + prefix + "' should hold keys and values");
+  if (!node.IsMap()) throw InputError(originOf(path, node) + ": '" + prefix + "' should hold keys and values");
   for (const auto& item : node) {
-    if (!item.first.IsScalar()) throw InputError(origin(path, item.first) + ": a key that is no text");
+    if (!item.first.IsScalar()) throw InputError(originOf(path, item.first) + ": a key that is no text");
     const std::string key = (prefix.empty() ? "" : prefix + ".") + item.first.Scalar();
     if (item.second.IsMap()) {
       flatten(path, item.second, key, settings, depth + 1);
     } else if (item.second.IsScalar()) {
-      settings.push_back({key, item.second.Scalar(), origin(path, item.second)});
+      settings.push_back({key, item.second.Scalar(), originOf(path, item.second)});
     } else {
-      throw InputError(origin(path, item.first) + ": '" + key + "' has no single value");
+      throw InputError(originOf(path, item.first) + ": '" + key + "' has no single value");
     }
   }
 }
@@ -60,11 +47,11 @@ std::vector<Setting> flattenedOnce(const std::string& path, const YAML::Node& no
 }  // namespace
 
 std::vector<Setting> readSettings(const std::string& path) {
-  return flattenedOnce(path, load(path));
+  return flattenedOnce(path, loadYaml(path));
 }
 
 ClassTable readClassTable(const std::string& path) {
-  const YAML::Node root = load(path);
+  const YAML::Node root = loadYaml(path);
   if (!root.IsMap() || root.size() != 1 || !root["classes"] || !root["classes"].IsSequence()) {
     throw InputError(path + ": a class table holds the one key 'classes' with a list");
   }

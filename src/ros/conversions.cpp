@@ -24,6 +24,8 @@ Detection fromObject(const SemanticObject& object, ClassIndex class_index, const
   }
   const Eigen::Vector3d size(object.size.x, object.size.y, object.size.z);
   if (!size.isZero(0.0)) detection.size_m = size;
+  if (object.points > 0) detection.points = static_cast<int>(object.points);
+  detection.is_moving = object.is_moving != 0;
   return detection;
 }
 
@@ -40,6 +42,8 @@ SemanticObject toObject(const Detection& detection, const ClassTable& classes) {
   object.size.x = size.x();
   object.size.y = size.y();
   object.size.z = size.z();
+  object.points = static_cast<std::uint32_t>(detection.points.value_or(0));
+  object.is_moving = detection.is_moving ? 1 : 0;
   return object;
 }
 

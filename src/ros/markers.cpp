@@ -172,4 +172,31 @@ visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const 
   return drawing.take();
 }
 
+visualization_msgs::MarkerArray toBoxMarkers(const std::vector<ExtractedObject>& objects, const ClassTable& classes,
+                                             const std_msgs::Header& header) {
+  constexpr float kOpacity = 0.45F;  // the points inside remain visible
+  constexpr double kThinnest_m = 0.1;
+  visualization_msgs::MarkerArray array;
+  visualization_msgs::Marker marker;
+  marker.header = header;
+  marker.action = visualization_msgs::Marker::DELETEALL;
+  array.markers.push_back(marker);
+  marker.action = visualization_msgs::Marker::ADD;
+  marker.type = visualization_msgs::Marker::CUBE;
+  for (const ExtractedObject& object : objects) {
+    const ClassInfo& info = classes[object.detection.class_index];
+    marker.ns = info.name;
+    marker.id = object.detection.row;
+    marker.pose = toMessage(Pose{Eigen::Quaterniond::Identity(), 0.5 * (object.box_min_m + object.box_max_m)});
+    const Eigen::Vector3d size = (object.box_max_m - object.box_min_m).cwiseMax(kThinnest_m);
+    marker.scale.x = size.x();
+    marker.scale.y = size.y();
+    marker.scale.z = size.z();
+    marker.color = toColor(info);
+    marker.color.a = kOpacity;
+    array.markers.push_back(marker);
+  }
+  return array;
+}
+
 }  // namespace semantic_mht_slam

@@ -84,5 +84,22 @@ TEST_F(ObjectsFileTest, BadRowsAreNamedByFileLineAndColumn) {
   expectRefused("", {"objects.csv", "empty"});
 }
 
+TEST_F(ObjectsFileTest, PointCountsAndMovingFlagsComeBackAndBadOnesAreNamed) {
+  Detection pole;
+  pole.points = 25;
+  Detection car;
+  car.class_index = 1;
+  car.is_moving = true;
+  const std::string text = formatObjects({{pole}, {car}}, classes_);
+  EXPECT_EQ(text, "frame,class,x,y,z,points,moving\n0,pole,0.000,0.000,0.000,25,0\n1,trunk,0.000,0.000,0.000,,1\n");
+  const auto frames = read(text);
+  EXPECT_EQ(frames[0][0].points, 25);
+  EXPECT_FALSE(frames[0][0].is_moving);
+  EXPECT_EQ(frames[1][0].points, std::nullopt);
+  EXPECT_TRUE(frames[1][0].is_moving);
+  expectRefused("frame,class,x,y,z,points\n0,pole,1,2,3,-1\n", {"objects.csv:2", "'points'"});
+  expectRefused("frame,class,x,y,z,moving\n0,pole,1,2,3,2\n", {"objects.csv:2", "'moving'"});
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

@@ -48,7 +48,8 @@ class ProgramsTest : public ::testing::Test {
 };
 
 TEST_F(ProgramsTest, EachAnswersHelpWithCode0) {
-  for (const char* program : {"slam_offline", "kitti_to_bag", "simulate_drive", "evaluate", "slam_node"}) {
+  for (const char* program : {"slam_offline", "kitti_to_bag", "simulate_drive", "evaluate", "slam_node",
+                              "extract_objects", "object_extractor_node", "segmentation_node"}) {
     const ProgramResult result = runProgramOfPackage(program, "--help");
     EXPECT_EQ(result.exit_code, 0) << program;
     EXPECT_NE(result.output.find(program), std::string::npos) << program;

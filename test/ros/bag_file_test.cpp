@@ -62,6 +62,8 @@ TEST_F(BagFileTest, RecordingComesBackBitForBit) {
       EXPECT_EQ(actual[row].class_index, expected[row].class_index);
       EXPECT_EQ(actual[row].position_m, expected[row].position_m);
       EXPECT_EQ(actual[row].score, expected[row].score);
+      EXPECT_EQ(actual[row].points, expected[row].points);
+      EXPECT_EQ(actual[row].is_moving, expected[row].is_moving);
       EXPECT_EQ(actual[row].cov_m2, expected[row].cov_m2);
       EXPECT_EQ(actual[row].size_m, expected[row].size_m);
       EXPECT_EQ(actual[row].row, expected[row].row);

@@ -44,6 +44,8 @@ inline Recording makeCircleRecording(std::size_t frames) {
       detection.class_index = static_cast<ClassIndex>(row % 2);
       detection.position_m = {rng.uniform(2.0, 30.0), rng.uniform(-15.0, 15.0), rng.uniform(-1.0, 1.0)};
       if (row == 1) detection.score = 0.25;
+      if (row == 1) detection.is_moving = true;
+      if (row == 2) detection.points = 33;
       if (row == 2) detection.cov_m2 = Eigen::Matrix3d(Eigen::Vector3d(0.04, 0.01, 0.09).asDiagonal());
       detection.row = static_cast<int>(row);
       frame.detections.push_back(detection);

@@ -26,7 +26,7 @@ struct Dataset {
 /// Which files of a data-set folder to read; relative paths are looked up in the folder first.
 struct DatasetFiles {
   std::string folder;
-  std::string objects = "objects.csv";
+  std::string objects = "objects.csv";  ///< empty: none are read, each frame has no detections
   std::string odometry = "odometry/vo_orb.txt";
 };
 

@@ -16,6 +16,8 @@ struct Detection {
   std::optional<double> score;                           ///< detector confidence in [0, 1]
   std::optional<Eigen::Matrix3d> cov_m2;                 ///< centroid covariance in the base frame
   std::optional<Eigen::Vector3d> size_m;                 ///< extents along the axes of the base frame
+  std::optional<int> points;                             ///< sensor points that the object was made of
+  bool is_moving = false;                                ///< the detector says that it moves
   int row = 0;                                           ///< place in its message or in its frame's rows of a file
 };
 

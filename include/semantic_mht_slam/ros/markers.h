@@ -1,13 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include <std_msgs/Header.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <semantic_mht_slam/SemanticMap.h>
 
 #include "semantic_mht_slam/app/live_config.h"
 #include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/perception/extracted_object.h"
 #include "semantic_mht_slam/slam/frame.h"
 
 namespace semantic_mht_slam {
@@ -22,5 +25,9 @@ visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& 
 /// namespace a class, and `undecided` and `labels`; the first marker clears what was shown before.
 visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes,
                                                   const LiveConfig& live);
+/// Extracted objects as the boxes of their points in class colours, in the frame of the scan. One marker namespace a
+/// class; the first marker clears what was shown before.
+visualization_msgs::MarkerArray toBoxMarkers(const std::vector<ExtractedObject>& objects, const ClassTable& classes,
+                                             const std_msgs::Header& header);
 
 }  // namespace semantic_mht_slam
