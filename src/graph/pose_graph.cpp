@@ -15,7 +15,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr int kFullIterations = 50;
-constexpr double kFullTolerance = 1e-7;  // of the cost; what is left of the poses is below a centimetre
+constexpr double kFullTolerance = 1e-6;  // of the cost; what is left of the poses is a few centimetres
 constexpr int kRepairIterations = 1;     // an interpolated piece is so near its optimum that one step reaches it
 constexpr double kWindowShare = 0.5;     // of a time budget, so that loop closures get the rest
 

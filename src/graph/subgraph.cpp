@@ -12,31 +12,31 @@
 namespace semantic_mht_slam {
 namespace {
 
-/// What sightings from held submaps say about a landmark: in its position they are linear, so that any number of them
-/// is one Gaussian. The weight of each under the robust loss is that at the present estimate.
-class HeldSightings {
- public:
-  HeldSightings(const Eigen::Vector3d& landmark_m, double cauchy_scale)
-      : landmark_m_(landmark_m), scale_sq_(cauchy_scale * cauchy_scale) {}
+constexpr double kContested = 9.0;  // squared distance in units of the squared scale of the robust loss
 
-  void add(const Pose& T_world_submap, const PointCost<3>& sighting) {
-    const Eigen::Matrix3d rotation = T_world_submap.rotation.toRotationMatrix();
-    const Eigen::Matrix3d by_point = sighting.squareRoot() * rotation.transpose();
-    const Eigen::Vector3d seen_m = rotation * sighting.measured() + T_world_submap.translation_m;
-    const double weight = 1.0 / (1.0 + (by_point * (landmark_m_ - seen_m)).squaredNorm() / scale_sq_);
+/// What sightings from submaps that stay where they are say about a landmark: in its position they are linear, so that
+/// any number of them is one Gaussian.
+class SightingsTogether {
+ public:
+  /// Squared whitened distance of a sighting from a position.
+  static double distanceSq(const Pose& T_world_submap, const PointCost<3>& sighting,
+                           const Eigen::Vector3d& landmark_m) {
+    const Eigen::Vector3d error = T_world_submap.inverse() * landmark_m - sighting.measured();
+    return (sighting.squareRoot() * error).squaredNorm();
+  }
+
+  void add(const Pose& T_world_submap, const PointCost<3>& sighting, double weight) {
+    const Eigen::Matrix3d by_point = sighting.squareRoot() * T_world_submap.rotation.conjugate().toRotationMatrix();
     const Eigen::Matrix3d information = weight * by_point.transpose() * by_point;
     information_ += information;
-    weighted_ += information * (seen_m - landmark_m_);
+    weighted_ += information * (T_world_submap * sighting.measured());
   }
 
   bool isEmpty() const { return information_.isZero(0.0); }
-
-  Eigen::Vector3d mean_m() const { return landmark_m_ + information_.ldlt().solve(weighted_); }
+  Eigen::Vector3d mean_m() const { return information_.ldlt().solve(weighted_); }
   const Eigen::Matrix3d& information() const { return information_; }
 
  private:
-  Eigen::Vector3d landmark_m_;
-  double scale_sq_;
   Eigen::Matrix3d information_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d weighted_ = Eigen::Vector3d::Zero();
 };
@@ -134,13 +134,27 @@ void Subgraph::addLandmark(std::int64_t id) {
     problem_.AddResidualBlock(sighting.cost.get(), &landmark_loss_, graph_.submaps[sighting.submap].block.data(),
                               block);
   };
-  HeldSightings held(landmarks_.at(id), landmark_scale_);
+  SightingsTogether inside;
   for (const SightingFactor& sighting : landmark.sightings) {
-    if (isInside(sighting.submap)) {
-      addSighting(sighting);
-    } else if (surroundings_ == Surroundings::kHeld) {
-      held.add(graph_.submaps[sighting.submap].pose(), *sighting.cost);
-    }
+    if (!isInside(sighting.submap)) continue;
+    addSighting(sighting);
+    inside.add(graph_.submaps[sighting.submap].pose(), *sighting.cost, 1.0);
+  }
+  const bool is_seen_outside =
+      !isInside(landmark.sightings.front().submap) || !isInside(landmark.sightings.back().submap);
+  if (surroundings_ == Surroundings::kHeld && is_seen_outside) addHeldSightings(landmark, inside.mean_m(), block);
+}
+
+/// The weight of each is that of the robust loss where the submaps inside see the landmark. Sightings far from there
+/// mean a loop that is still open: closing it is not for a few submaps, which it would only bend.
+void Subgraph::addHeldSightings(const LandmarkState& landmark, const Eigen::Vector3d& seen_inside_m, double* block) {
+  const double scale_sq = landmark_scale_ * landmark_scale_;
+  SightingsTogether held;
+  for (const SightingFactor& sighting : landmark.sightings) {
+    if (isInside(sighting.submap)) continue;
+    const Pose T_world_submap = graph_.submaps[sighting.submap].pose();
+    const double ratio = SightingsTogether::distanceSq(T_world_submap, *sighting.cost, seen_inside_m) / scale_sq;
+    if (ratio < kContested) held.add(T_world_submap, *sighting.cost, 1.0 / (1.0 + ratio));
   }
   if (held.isEmpty()) return;
   problem_.AddResidualBlock(&held_.emplace_back(held.mean_m(), held.information()), nullptr, block);

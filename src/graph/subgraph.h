@@ -54,6 +54,7 @@ class Subgraph {
   void addPose(int submap);
   void addSubmapFactors(int submap);
   void addLandmark(std::int64_t id);
+  void addHeldSightings(const LandmarkState& landmark, const Eigen::Vector3d& seen_inside_m, double* block);
   void add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to);
   std::optional<Eigen::MatrixXd> covarianceOf(const double* block, int size);
   void restore(const std::vector<double>& backup);
