@@ -11,13 +11,10 @@ PACKAGES=(
   librosbag-dev python3-rosbag libvisualization-msgs-dev libnav-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-msgs python3-visualization-msgs
   libmessage-filters-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev
-  libpcl-dev libopencv-dev
-  libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
-  libpcl-dev
-  libflann-dev liblz4-dev libopencv-dev
   libdiagnostic-msgs-dev libdiagnostic-updater-dev python3-diagnostic-msgs libstd-srvs-dev libroslib-dev
   libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure
-  libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev
+  libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
+  libpcl-dev libopencv-dev libflann-dev liblz4-dev
   rviz librviz-dev qtbase5-dev libgl1-mesa-dri xvfb xauth xdotool imagemagick
   libgtest-dev libbenchmark-dev
 )
