@@ -23,7 +23,7 @@ struct PaperChainConfig {
   int scenes_per_submap = 5;
   double max_scene_distance = 0.35;  ///< of scene histograms
   double recent_m = 50.0;            ///< driven since: too young to be a revisit
-  double min_score = 1.45;           ///< of S_ncc + S_scene, in [-1, 2]
+  double min_score = 1.5;            ///< of S_ncc + S_scene, in [-1, 2]
   CovisibilityConfig covisibility;
   SceneScoreConfig scene;
   LoopFilterConfig filter;
