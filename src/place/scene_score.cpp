@@ -1,6 +1,5 @@
 #include "semantic_mht_slam/place/scene_score.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -65,22 +64,35 @@ Match matchOf(const Point& a, const Point& b, double scaled_distance, const Scen
   return {similarity, config.formula == PairScoreFormula::kSimilarity ? similarity : 1.0 - s_match * s_class};
 }
 
-// `rows` has at most as many points as `columns`.
-Match matchOf(const std::vector<Point>& rows, const std::vector<Point>& columns, const SceneScoreConfig& config) {
+// Pairs beyond the largest distance all cost 2 and add alike: one column of its own for each row stands for them, and
+// the matrix stays sparse. `rows` has at most as many points as `columns`.
+SparseCostMatrix costsOf(const std::vector<Point>& rows, const std::vector<Point>& columns, double max_distance_m) {
+  const auto column_count = static_cast<int>(columns.size());
   SparseCostMatrix costs;
-  costs.clear(static_cast<int>(columns.size()));
-  for (const Point& row : rows) {
+  costs.clear(column_count + static_cast<int>(rows.size()));
+  for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
     costs.addRow();
-    for (int j = 0; j < static_cast<int>(columns.size()); ++j) {
-      const double distance_m = (row.position_m - columns[j].position_m).norm();
-      costs.add(j, 2.0 * std::min(distance_m / config.max_distance_m, 1.0));
+    for (int j = 0; j < column_count; ++j) {
+      const double distance_m = (rows[i].position_m - columns[j].position_m).norm();
+      if (distance_m < max_distance_m) costs.add(j, 2.0 * distance_m / max_distance_m);
     }
+    costs.add(column_count + i, 2.0);
   }
+  return costs;
+}
+
+Match matchOf(const std::vector<Point>& rows, const std::vector<Point>& columns, const SceneScoreConfig& config) {
+  const SparseCostMatrix costs = costsOf(rows, columns, config.max_distance_m);
   const auto assignment = AssignmentSolver().solve(costs);
   Match sum;
   for (int i = 0; i < costs.rows(); ++i) {
-    const int j = assignment->column_for_row[i];
-    const Match match = matchOf(rows[i], columns[j], costs.cost(costs.rowBegin(i) + j), config);
+    const auto column = static_cast<std::size_t>(assignment->column_for_row[i]);
+    if (column >= columns.size()) {
+      sum.score += config.formula == PairScoreFormula::kAsPrinted ? 1.0 : 0.0;
+      continue;
+    }
+    const double distance_m = (rows[i].position_m - columns[column].position_m).norm();
+    const Match match = matchOf(rows[i], columns[column], 2.0 * distance_m / config.max_distance_m, config);
     sum.similarity += match.similarity;
     sum.score += match.score;
   }

@@ -7,8 +7,15 @@
 namespace semantic_mht_slam {
 namespace {
 
-TEST(LoopFilterTest, FirstUpdateEqualsBayesRuleByHand) {
-  LoopFilter filter(LoopFilterConfig{});
+LoopFilterConfig makeConfig() {
+  LoopFilterConfig config;
+  config.hit_prob = 0.8;
+  config.false_hit_prob = 0.2;
+  return config;
+}
+
+TEST(LoopFilterTest, FirstUpdatesEqualBayesRuleByHand) {
+  LoopFilter filter(makeConfig());
   // Prior 0.1; likelihoods 0.8 and 0.2.
   EXPECT_NEAR(filter.update(true), 0.08 / (0.08 + 0.18), 1e-12);
   // Prior 0.9 * 4/13 + 0.1 * 9/13 = 4.5/13.
@@ -50,7 +57,7 @@ TEST(LoopFilterTest, StaysAProbabilityAndAHitNeverLowersItBelowAMiss) {
 }
 
 TEST(LoopFilterTest, ResetForgetsEverything) {
-  LoopFilter filter(LoopFilterConfig{});
+  LoopFilter filter(makeConfig());
   for (int i = 0; i < 10; ++i) filter.update(true);
   filter.reset();
   EXPECT_EQ(filter.loopProb(), 0.0);

@@ -7,11 +7,11 @@ namespace semantic_mht_slam {
 /// Transitions and observation likelihoods of the loop filter. The transitions are those of Angeli et al., "Fast and
 /// Incremental Method for Loop-Closure Detection Using Bags of Visual Words" (IEEE T-RO 2008).
 struct LoopFilterConfig {
-  double enter_prob = 0.1;      ///< P(loop | no loop before)
-  double stay_prob = 0.9;       ///< P(loop | loop before)
-  double hit_prob = 0.8;        ///< P(scores pass | loop)
-  double false_hit_prob = 0.2;  ///< P(scores pass | no loop)
-  double min_loop_prob = 0.75;  ///< belief at which a loop closure is taken for one
+  double enter_prob = 0.1;       ///< P(loop | no loop before)
+  double stay_prob = 0.9;        ///< P(loop | loop before)
+  double hit_prob = 0.6;         ///< P(scores pass | loop)
+  double false_hit_prob = 0.05;  ///< P(scores pass | no loop)
+  double min_loop_prob = 0.75;   ///< belief at which a loop closure is taken for one
 };
 
 void describe(LoopFilterConfig& config, Fields& fields);
