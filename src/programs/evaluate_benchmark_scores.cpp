@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -64,6 +65,11 @@ void addClosures(const BenchmarkCell& cell, const SequenceTruth& truth, Figures&
   const std::string path = inFolder(cell.folder, "loop_closures.csv");
   std::vector<ClosureEstimate> closures;
   if (fs::exists(path)) closures = readClosures(path);
+  const auto frames = static_cast<std::int64_t>(truth.stamps.size());
+  for (const ClosureEstimate& closure : closures) {  // the refused ones too: they are drawn
+    const auto [low, high] = std::minmax(closure.query_frame, closure.match_frame);
+    if (low < 0 || high >= frames) throw InputError(path + ": a frame outside 0 to " + std::to_string(frames - 1));
+  }
   ClosureScore score;
   withFileName(path, [&] { score = closureScore(truth.T_world_velodyne, closures); });
   figures.emplace_back("closures_checked", static_cast<double>(closures.size()));

@@ -162,6 +162,18 @@ TEST_F(BenchmarkTest, LiveEstimateAndLoopClosuresAreScored) {
   EXPECT_EQ(results.at(3, "closures_precision"), "0.500000");
 }
 
+TEST_F(BenchmarkTest, AResultThatCannotBeScoredIsAFailureOfItsRunOnly) {
+  const std::string copy = *folder_ / "unscorable";
+  fs::copy(output(), copy, fs::copy_options::recursive);
+  writeFileAtomically(copy + "/runs/town/odometry/objects/ukf/seed_1/loop_closures.csv",
+                      "query_frame,match_frame,accepted,tx,ty,tz\n300,-1,0,,,\n");
+  const ProgramResult result = benchmark(copy);
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(has(result.output, "ukf seed 1 cannot be scored: ")) << result.output;
+  EXPECT_TRUE(has(result.output, "4 found complete, 1 failed")) << result.output;
+  EXPECT_EQ(Table(copy + "/results.csv").at(1, "status"), "ok");
+}
+
 TEST_F(BenchmarkTest, BadOptionsAreRefusedBeforeAnythingRuns) {
   const std::string nothing = *folder_ / "nothing";
   const std::vector<std::pair<std::string, std::string>> cases = {
