@@ -1,5 +1,7 @@
 #include "train_submap_evaluator_drives.h"
 
+#include <memory>
+
 #include <algorithm>
 #include <filesystem>
 #include <set>
@@ -34,16 +36,16 @@ std::vector<std::vector<int>> findRevisits(const std::vector<Pose>& T_map_base) 
   return earlier;
 }
 
-Slam runSlam(const Recording& recording, const SlamConfig& config, const ClassTable& classes) {
-  Slam slam(config, classes);
+std::unique_ptr<Slam> runSlam(const Recording& recording, const SlamConfig& config, const ClassTable& classes) {
+  auto slam = std::make_unique<Slam>(config, classes);
   auto frame = recording.detector_frames.begin();
   for (const StampedPose& T_odom_base : recording.odometry) {
-    slam.addOdometry(T_odom_base);
+    slam->addOdometry(T_odom_base);
     for (; frame != recording.detector_frames.end() && frame->stamp <= T_odom_base.stamp; ++frame) {
-      slam.addDetections(frame->stamp, frame->detections);
+      slam->addDetections(frame->stamp, frame->detections);
     }
   }
-  slam.finish();
+  slam->finish();
   return slam;
 }
 
@@ -98,11 +100,11 @@ std::set<std::size_t> revisitedSubmaps(const std::vector<TrueSubmap>& submaps, s
 LabelledDrive labelledDrive(const std::string& name, const Dataset& dataset, const SlamConfig& config,
                             const ClassTable& classes) {
   const auto earlier = findRevisits(*dataset.T_map_base);
-  const Slam slam = runSlam(toRecording(dataset), config, classes);
+  const std::unique_ptr<Slam> slam = runSlam(toRecording(dataset), config, classes);
   LabelledDrive drive{name, {}};
   SubmapFeatureExtractor extractor(classes.size());
   std::vector<TrueSubmap> submaps;
-  for (const auto& submap : slam.map().submaps()) {
+  for (const auto& submap : slam->map().submaps()) {
     submaps.push_back(toTrueSubmap(*submap, dataset, classes));
     const auto revisited = revisitedSubmaps(submaps, submaps.size() - 1, earlier);
     const bool is_good = std::any_of(revisited.begin(), revisited.end(),
