@@ -29,9 +29,10 @@ void CovisibilityGraph::addKeyframe(const Scene& seen) {
   const auto landmarks = landmarksOf(seen);
   for (const auto& [id, object] : landmarks) {
     ++seen_[id];
+    std::map<LandmarkId, Edge>& edges = edges_[id];
     for (const auto& [other_id, other] : landmarks) {
       if (other_id == id) continue;
-      Edge& edge = edges_[id][other_id];
+      Edge& edge = edges[other_id];
       ++edge.together;
       edge.distance_sum_m += (object->position_m - other->position_m).norm();
     }
@@ -56,8 +57,10 @@ double CovisibilityGraph::weightOf(LandmarkId a, LandmarkId b, const Edge& edge)
 }
 
 double CovisibilityGraph::weight(LandmarkId a, LandmarkId b) const {
-  if (timesSeenTogether(a, b) == 0) return 0.0;
-  return weightOf(a, b, edges_.at(a).at(b));
+  const auto of_a = edges_.find(a);
+  if (of_a == edges_.end()) return 0.0;
+  const auto edge = of_a->second.find(b);
+  return edge == of_a->second.end() ? 0.0 : weightOf(a, b, edge->second);
 }
 
 std::vector<LandmarkId> CovisibilityGraph::neighbours(LandmarkId landmark, double min_weight) const {

@@ -72,8 +72,8 @@ CentredEntries centredEntries(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b
 Eigen::MatrixXd classLaplacian(const Scene& scene, int classes, const CovisibilityGraph& graph,
                                const CovisibilityConfig& config) {
   return laplacianOf(scene, classes, [&](const SceneObject& a, const SceneObject& b) {
-    const bool was_seen = graph.timesSeenTogether(a.landmark, b.landmark) > 0;
-    return was_seen ? graph.weight(a.landmark, b.landmark) : kernelOf(a, b, config);
+    const double w = graph.weight(a.landmark, b.landmark);  // 0: never seen together
+    return w > 0.0 ? w : kernelOf(a, b, config);
   });
 }
 

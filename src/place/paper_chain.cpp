@@ -85,10 +85,18 @@ std::vector<PaperCandidate> PaperChain::scoreScenesOf(const PlacesOfSubmap& subm
 
 std::vector<PaperCandidate> PaperChain::query(const Keyframe& keyframe, const ClassHistogram& submap_histogram) {
   const double latest_m = keyframe.driven_m - config_.recent_m;
+  const auto laplacianOfQuery = [&] {  // that of the newest submap's keyframes was made when they came in
+    if (submaps_.empty()) return laplacianOf(keyframe.scene);
+    const std::vector<Place>& places = submaps_.back().places;
+    const auto own = std::find_if(places.begin(), places.end(), [&](const Place& place) {
+      return place.submap == keyframe.submap && place.frame == keyframe.frame;
+    });
+    return own != places.end() ? own->laplacian : laplacianOf(keyframe.scene);
+  };
   const auto similar =
       submap_index_.nearest(submap_histogram, static_cast<std::size_t>(config_.similar_submaps), config_.max_divergence,
                             [&](std::size_t i) { return submaps_[i].begin_m <= latest_m; });
-  const Eigen::MatrixXd laplacian = laplacianOf(keyframe.scene);
+  const Eigen::MatrixXd laplacian = laplacianOfQuery();
   std::vector<PaperCandidate> candidates;
   for (const HistogramMatch& match : similar) {
     auto scored = scoreScenesOf(submaps_[match.index], match.distance, keyframe, laplacian);

@@ -135,7 +135,11 @@ TEST(SubmapEvaluatorTest, WithATreeChecksWhatItFindsWorthIt) {
 }
 
 TEST(SubmapEvaluatorTest, AMissingTreeIsAnErrorUnlessEverySubmapIsChecked) {
-  expectInputError([] { makeSubmapEvaluator(SubmapEvaluatorConfig{}, "/no/such/file", 2); }, {"/no/such/file"});
+  SubmapEvaluatorConfig config;
+  config.check_all = false;
+  expectInputError([&] { makeSubmapEvaluator(config, "/no/such/file", 2); }, {"/no/such/file"});
+  config.check_all = true;
+  EXPECT_NO_THROW(makeSubmapEvaluator(config, "/no/such/file", 2));
 }
 
 }  // namespace

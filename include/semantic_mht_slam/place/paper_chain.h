@@ -18,7 +18,7 @@ namespace semantic_mht_slam {
 
 /// Parameters of the paper's place recognition.
 struct PaperChainConfig {
-  int similar_submaps = 20;
+  int similar_submaps = 12;
   double max_divergence = 0.1;  ///< of submaps, nats
   int scenes_per_submap = 5;
   double max_scene_distance = 0.35;  ///< of scene histograms
