@@ -46,6 +46,10 @@ class PlaceRecognizer {
   /// Candidates by falling score, `query` being the number of keyframes; the first is accepted if it stands alone.
   std::vector<PlaceMatch> locate(const Scene& scene, const std::vector<Pose>& T_map_keyframe) const;
 
+  /// The state without the keyframes, which are given as they were added (with their scenes): into an empty recogniser,
+  /// or out of one (see `StateArchive`).
+  void transfer(StateArchive& archive, std::vector<Keyframe> keyframes);
+
   std::size_t keyframes() const { return places_.size(); }
 
   /// Without their scenes.

@@ -16,6 +16,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Everything behind the mapper.
 struct BackEndConfig {
   bool close_loops = true;
@@ -81,6 +83,11 @@ class BackEnd {
 
   /// Every finished submap, by its index.
   const std::vector<SubmapCheck>& checks() const { return checks_; }
+  /// Keyframes and closures: into an empty back end, or out of one (see `StateArchive`). Of closures that were refused only what people look at is kept.
+  void transferKeyframes(StateArchive& archive);
+
+  /// The pose graph and the state of place recognition; to be read after the keyframes.
+  void transferGraph(StateArchive& archive);
 
   /// Corrected position of a landmark, map frame; empty if it is not in the graph.
   std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;
@@ -95,6 +102,7 @@ class BackEnd {
   bool mergeLandmarks(LandmarkId merged, LandmarkId survivor);
   void readBack();
   LandmarkId resolve(LandmarkId id) const;
+  int submapOf(int keyframe) const;
 
   BackEndConfig config_;
   ClassTable classes_;

@@ -9,6 +9,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// The finished submaps and what they know of each landmark. Merged ids stay resolvable.
 class SubmapArchive {
  public:
@@ -33,11 +35,16 @@ class SubmapArchive {
   /// positives and for landmarks that did not make it into the map.
   std::vector<DetectionAssociation> associations() const;
 
+  /// All submaps and landmarks (see `StateArchive`).
+  void transfer(StateArchive& archive);
+
  private:
   struct Entry {
     int submap = 0;  ///< index in `submaps_`
     MixtureLandmark landmark;
   };
+
+  void transferEntries(StateArchive& archive);
 
   bool isKept(LandmarkId id) const;
 

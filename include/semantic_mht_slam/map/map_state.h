@@ -1,0 +1,15 @@
+#pragma once
+
+#include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/map/submap.h"
+
+namespace semantic_mht_slam {
+
+void transfer(StateArchive& archive, MixtureComponent& component);
+void transfer(StateArchive& archive, MixtureLandmark& landmark);
+void transfer(StateArchive& archive, DetectionAssociation& association);
+void transfer(StateArchive& archive, MergedLandmark& merged);
+void transfer(StateArchive& archive, MapAlignment& alignment);
+void transfer(StateArchive& archive, Submap& submap);
+
+}  // namespace semantic_mht_slam
