@@ -29,9 +29,23 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
   archive(class_probs, existence_prob, observations, first_submap, last_submap, merged_ids);
 }
 
-void transfer(StateArchive& archive, DetectionAssociation& association) {
-  auto& [frame, row, landmark] = association;
-  archive(frame, row, landmark);
+void transferAssociations(StateArchive& archive, std::vector<DetectionAssociation>& associations) {
+  const std::size_t count = archive.count(associations.size());
+  if (archive.isReading()) associations.clear();
+  DetectionAssociation last;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (archive.isReading()) associations.emplace_back();
+    auto& [frame, row, landmark] = associations[i];
+    // Differences are small numbers, and alike from frame to frame; both are unsigned to wrap around.
+    std::size_t frame_step = frame - last.frame;
+    auto row_step = static_cast<std::int64_t>(row) - (frame_step == 0 ? last.row : 0);
+    std::uint64_t landmark_step = landmark - last.landmark;
+    archive(frame_step, row_step, landmark_step);
+    frame = last.frame + frame_step;
+    row = static_cast<int>(row_step + (frame_step == 0 ? last.row : 0));
+    landmark = last.landmark + landmark_step;
+    last = {frame, row, landmark == kNoLandmark ? last.landmark : landmark};
+  }
 }
 
 void transfer(StateArchive& archive, MergedLandmark& merged_landmark) {
@@ -46,7 +60,9 @@ void transfer(StateArchive& archive, MapAlignment& alignment) {
 
 void transfer(StateArchive& archive, Submap& submap) {
   auto& [index, begin, end, T_odom_submap, landmarks, associations, merged, alignment] = submap;
-  archive(index, begin, end, T_odom_submap, landmarks, associations, merged, alignment);
+  archive(index, begin, end, T_odom_submap, landmarks);
+  transferAssociations(archive, associations);
+  archive(merged, alignment);
 }
 
 }  // namespace semantic_mht_slam

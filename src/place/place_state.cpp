@@ -1,3 +1,4 @@
+#include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/place/place_recognizer.h"
 
@@ -15,12 +16,26 @@ void transferMatch(StateArchive& archive, PlaceMatch& match) {
 
 }  // namespace
 
-void PlaceRecognizer::transfer(StateArchive& archive, std::vector<Keyframe> keyframes) {
+void LoopFilter::transfer(StateArchive& archive) {
+  archive(loop_prob_);
+}
+
+void PaperChain::transfer(StateArchive& archive) {
+  archive(filter_);
+}
+
+void PlaceRecognizer::transfer(StateArchive& archive, std::vector<PlacesOfSubmap> submaps) {
   if (archive.isReading()) {
-    const std::size_t count = keyframes.size();
-    places_.clear();
-    add(std::move(keyframes), count);
+    for (PlacesOfSubmap& submap : submaps) {
+      if (paper_) paper_->add(submap.histogram, submap.keyframes);
+      const std::size_t count = places_.size() + submap.keyframes.size();
+      add(std::move(submap.keyframes), count);
+    }
   }
+  bool has_filter = paper_.has_value();
+  archive(has_filter);
+  if (has_filter != paper_.has_value()) throw InputError("made with another place.chain than the present one");
+  if (paper_) archive(*paper_);
   recent_.resize(archive.count(recent_.size()));
   for (PlaceMatch& match : recent_) {
     transferMatch(archive, match);

@@ -30,7 +30,10 @@ std::uint64_t digestOf(const Bytes& bytes) {
   return value;
 }
 
+/// Wherever the submap evaluator's tree was found, it is the same by its name.
 std::string parametersOf(SlamConfig config) {
+  std::string& tree = config.back_end.evaluator.tree;
+  tree = std::filesystem::path(tree).filename().string();
   Fields fields;
   describe(config, fields);
   return toYaml(fields);

@@ -47,7 +47,7 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
   SavedMap map;
   {
-    const std::lock_guard<std::mutex> lock(slam_mutex_);
+    const std::lock_guard<TicketMutex> lock(slam_mutex_);
     map = mapOf(*slam_);
   }
   try {
@@ -77,7 +77,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
     response.message = std::string(error.what()) + "; the running map stays";
     return true;
   }
-  const std::lock_guard<std::mutex> lock(slam_mutex_);
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
   slam_ = std::move(loaded);
   waiting_objects_.clear();
   published_odometry_ = 0;

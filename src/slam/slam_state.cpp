@@ -60,11 +60,11 @@ void Slam::transferSubmaps(StateArchive& archive) {
 }
 
 void Slam::transferKeyframes(StateArchive& archive) {
-  if (back_end_) back_end_->transferKeyframes(archive);
+  if (back_end_) back_end_->transferKeyframes(archive, map_);
 }
 
 void Slam::transferGraph(StateArchive& archive) {
-  if (back_end_) back_end_->transferGraph(archive);
+  if (back_end_) back_end_->transferGraph(archive, map_);
 }
 
 void Slam::transferMapper(StateArchive& archive) {

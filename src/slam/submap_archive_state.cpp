@@ -15,14 +15,13 @@ std::string bytesOf(const MixtureLandmark& landmark) {
   return archive.written();
 }
 
-/// A landmark of a submap by its id; null if the submap lacks it.
-const MixtureLandmark* findLandmark(const Submap& submap, LandmarkId id) {
+}  // namespace
+
+const MixtureLandmark* SubmapArchive::findLandmark(const Submap& submap, LandmarkId id) {
   const auto found = std::lower_bound(submap.landmarks.begin(), submap.landmarks.end(), id,
                                       [](const MixtureLandmark& landmark, LandmarkId i) { return landmark.id < i; });
   return found == submap.landmarks.end() || found->id != id ? nullptr : &*found;
 }
-
-}  // namespace
 
 /// Most entries are what the newest submap says of the landmark.
 void SubmapArchive::transferEntries(StateArchive& archive) {

@@ -1,74 +1,15 @@
 #include "semantic_mht_slam/slam/slam_state.h"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 #include "support/expect_input_error.h"
+#include "support/square_drive.h"
 
 namespace semantic_mht_slam {
 namespace {
-
-ClassTable makeClasses(const std::string& second = "trunk") {
-  std::vector<ClassInfo> classes(2);
-  classes[0].id = 1;
-  classes[0].name = "pole";
-  classes[1].id = 2;
-  classes[1].name = second;
-  return ClassTable(classes, "test");
-}
-
-/// Rounds of a square of 120 m in a street with poles and trunks, 1 m a frame, odometry that drifts.
-class Drive {
- public:
-  explicit Drive(std::uint64_t seed) : rng_(seed) {
-    for (int i = 0; i < 160; ++i) {
-      const double along_m = 3.0 * i;
-      const Pose there = poseAt(along_m);
-      const double side_m = (i % 2 == 0 ? 1.0 : -1.0) * rng_.uniform(4.0, 12.0);
-      landmarks_m_.push_back(there * Eigen::Vector3d(rng_.uniform(-1.0, 1.0), side_m, 0.0));
-    }
-  }
-
-  /// Feeds frames [begin, end) to the estimator.
-  void feed(Slam& slam, int begin, int end) const {
-    for (int i = begin; i < end; ++i) {
-      Rng rng = rng_.fork("frame", static_cast<std::uint64_t>(i));
-      const Pose T_map_base = poseAt(1.0 * i);
-      const Pose drift{expRotation({0.0, 0.0, 2e-5 * i}), {2e-3 * i, 0.0, 0.0}};
-      slam.addOdometry({stampAt(i), drift * T_map_base});
-      Detections detections;
-      for (std::size_t k = 0; k < landmarks_m_.size(); ++k) {
-        const Eigen::Vector3d seen_m = T_map_base.inverse() * landmarks_m_[k];
-        if (seen_m.norm() > 30.0 || !rng.bernoulli(0.8)) continue;
-        Detection detection;
-        detection.class_index = k % 3 == 0 ? 1 : 0;
-        for (int axis = 0; axis < 3; ++axis) detection.position_m[axis] = seen_m[axis] + rng.normal(0.0, 0.1);
-        detection.row = static_cast<int>(detections.size());
-        detections.push_back(detection);
-      }
-      slam.addDetections(stampAt(i) - 30000000, detections);
-    }
-  }
-
- private:
-  static Stamp stampAt(int i) { return 100000000LL * (i + 1); }
-
-  static Pose poseAt(double along_m) {
-    const double side = std::fmod(along_m, 480.0) / 120.0;
-    const double in_side_m = 120.0 * (side - std::floor(side));
-    const double heading = 0.5 * M_PI * std::floor(side);
-    const Eigen::Vector3d corners[] = {{0, 0, 0}, {120, 0, 0}, {120, 120, 0}, {0, 120, 0}};
-    const Pose corner{expRotation({0.0, 0.0, heading}), corners[static_cast<int>(side)]};
-    return corner * Pose{Eigen::Quaterniond::Identity(), {in_side_m, 0.0, 0.0}};
-  }
-
-  Rng rng_;
-  std::vector<Eigen::Vector3d> landmarks_m_;
-};
 
 void expectSameResult(const Slam& a, const Slam& b) {
   const auto trajectory_a = a.trajectory();
@@ -116,8 +57,8 @@ class SlamStateTest : public testing::TestWithParam<int> {
 
 TEST_P(SlamStateTest, GoingOnFromASnapshotEqualsNeverHavingStopped) {
   constexpr int kFrames = 1100;  // a second round and a part of a third
-  const Drive drive(static_cast<std::uint64_t>(GetParam()));
-  const ClassTable classes = makeClasses();
+  const SquareDrive drive(static_cast<std::uint64_t>(GetParam()));
+  const ClassTable classes = makeStreetClasses();
   Slam whole(config(), classes);
   drive.feed(whole, 0, kFrames);
   whole.finish();
@@ -141,8 +82,8 @@ TEST_P(SlamStateTest, GoingOnFromASnapshotEqualsNeverHavingStopped) {
 }
 
 TEST_P(SlamStateTest, SnapshotOfARestoredEstimatorIsTheSame) {
-  const Drive drive(static_cast<std::uint64_t>(GetParam()));
-  const ClassTable classes = makeClasses();
+  const SquareDrive drive(static_cast<std::uint64_t>(GetParam()));
+  const ClassTable classes = makeStreetClasses();
   Slam slam(config(), classes);
   drive.feed(slam, 0, 700);
   const SlamState state = slam.snapshot();
@@ -152,8 +93,8 @@ TEST_P(SlamStateTest, SnapshotOfARestoredEstimatorIsTheSame) {
 INSTANTIATE_TEST_SUITE_P(Seeds, SlamStateTest, testing::Values(1, 2, 3));
 
 TEST(SlamStateErrorTest, BrokenStatesAreRefusedWithAReason) {
-  const Drive drive(4);
-  const ClassTable classes = makeClasses();
+  const SquareDrive drive(4);
+  const ClassTable classes = makeStreetClasses();
   const SlamConfig config = defaultsOf(Method::kDpmhm);
   Slam slam(config, classes);
   drive.feed(slam, 0, 200);
@@ -175,7 +116,7 @@ TEST(SlamStateErrorTest, BrokenStatesAreRefusedWithAReason) {
 }
 
 TEST(SlamStateErrorTest, AnotherMethodOrAnotherGraphIsRefused) {
-  const ClassTable classes = makeClasses();
+  const ClassTable classes = makeStreetClasses();
   SlamConfig config = defaultsOf(Method::kDpmhm);
   const SlamState state = Slam(config, classes).snapshot();
   expectInputError([&] { Slam(defaultsOf(Method::kUkf), classes, state); }, {"'dpmhm'", "'ukf'"});
@@ -184,8 +125,8 @@ TEST(SlamStateErrorTest, AnotherMethodOrAnotherGraphIsRefused) {
 }
 
 TEST(SlamStateErrorTest, RandomDamageNeverDoesMoreThanBeRefused) {
-  const Drive drive(5);
-  const ClassTable classes = makeClasses();
+  const SquareDrive drive(5);
+  const ClassTable classes = makeStreetClasses();
   const SlamConfig config = defaultsOf(Method::kDpmhm);
   Slam slam(config, classes);
   drive.feed(slam, 0, 130);

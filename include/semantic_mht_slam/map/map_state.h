@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/map/submap.h"
 
@@ -7,7 +9,7 @@ namespace semantic_mht_slam {
 
 void transfer(StateArchive& archive, MixtureComponent& component);
 void transfer(StateArchive& archive, MixtureLandmark& landmark);
-void transfer(StateArchive& archive, DetectionAssociation& association);
+void transferAssociations(StateArchive& archive, std::vector<DetectionAssociation>& associations);
 void transfer(StateArchive& archive, MergedLandmark& merged);
 void transfer(StateArchive& archive, MapAlignment& alignment);
 void transfer(StateArchive& archive, Submap& submap);

@@ -16,10 +16,18 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// What a finished submap is besides its keyframes.
 struct SubmapSummary {
   ClassHistogram histogram;  ///< of its landmarks; used by the paper's chain alone
   bool is_checked = true;    ///< false: its keyframes are only taken in, to be found later
+};
+
+/// The places of a finished submap, as they were taken in.
+struct PlacesOfSubmap {
+  ClassHistogram histogram;  ///< of its landmarks
+  std::vector<Keyframe> keyframes;
 };
 
 /// Finds earlier keyframes that show the place of a new one, and the rigid transform between them; a doubtful one is
@@ -48,7 +56,7 @@ class PlaceRecognizer {
 
   /// The state without the keyframes, which are given as they were added (with their scenes): into an empty recogniser,
   /// or out of one (see `StateArchive`).
-  void transfer(StateArchive& archive, std::vector<Keyframe> keyframes);
+  void transfer(StateArchive& archive, std::vector<PlacesOfSubmap> submaps);
 
   std::size_t keyframes() const { return places_.size(); }
 

@@ -13,6 +13,7 @@
 #include "semantic_mht_slam/slam/keyframes.h"
 #include "semantic_mht_slam/slam/loop_closure_record.h"
 #include "semantic_mht_slam/slam/revisit_search.h"
+#include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
 
@@ -83,11 +84,13 @@ class BackEnd {
 
   /// Every finished submap, by its index.
   const std::vector<SubmapCheck>& checks() const { return checks_; }
-  /// Keyframes and closures: into an empty back end, or out of one (see `StateArchive`). Of closures that were refused only what people look at is kept.
-  void transferKeyframes(StateArchive& archive);
+
+  /// Keyframes and closures: into an empty back end, or out of one (see `StateArchive`). `submaps` are those that the
+  /// keyframes were cut from. Of closures that were refused only what people look at is kept.
+  void transferKeyframes(StateArchive& archive, const SubmapArchive& submaps);
 
   /// The pose graph and the state of place recognition; to be read after the keyframes.
-  void transferGraph(StateArchive& archive);
+  void transferGraph(StateArchive& archive, const SubmapArchive& submaps);
 
   /// Corrected position of a landmark, map frame; empty if it is not in the graph.
   std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;

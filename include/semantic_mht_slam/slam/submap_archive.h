@@ -28,6 +28,9 @@ class SubmapArchive {
   /// of a submap by its index.
   std::vector<MixtureLandmark> landmarks(const std::function<Pose(int)>& T_map_submap) const;
 
+  /// A landmark of a submap as the submap has it, by the id that it had then; null if the submap lacks it.
+  static const MixtureLandmark* findLandmark(const Submap& submap, LandmarkId id);
+
   /// The landmark that an id stands for now: itself, or the one that it was merged into.
   LandmarkId resolve(LandmarkId id) const;
 
