@@ -36,28 +36,31 @@ std::vector<SubmapResult> submapResults(const BackEnd& back_end) {
 }  // namespace
 
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
-                     const ProgressCallback& progress) {
+                     const ProgressCallback& progress, const SlamState* start) {
   RunResult result;
-  Slam slam(config, classes);
+  Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
+  const std::size_t known = slam.trajectory().size();
   const auto begin = Clock::now();
   auto frame = recording.detector_frames.begin();
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {
     const auto step_begin = Clock::now();
-    slam.addOdometry(recording.odometry[i]);
+    const bool is_used = slam.addOdometry(recording.odometry[i]);
     while (frame != recording.detector_frames.end() && frame->stamp <= recording.odometry[i].stamp) {
       slam.addDetections(frame->stamp, frame->detections);
       ++frame;
     }
     result.step_ms.push_back(millisecondsSince(step_begin));
-    if (result.online_trajectory.size() < slam.counters().odometry)
-      result.online_trajectory.push_back(*slam.latestPose());
+    if (is_used) result.online_trajectory.push_back(*slam.latestPose());
     result.hypotheses.push_back(static_cast<int>(slam.hypotheses().size()));
     progress(i + 1, recording.odometry.size());
   }
   for (; frame != recording.detector_frames.end(); ++frame) slam.addDetections(frame->stamp, frame->detections);
   slam.finish();
   result.seconds = millisecondsSince(begin) / 1e3;
-  result.trajectory = slam.trajectory();
+  result.whole_trajectory = slam.trajectory();
+  result.trajectory.assign(result.whole_trajectory.begin() + static_cast<std::ptrdiff_t>(known),
+                           result.whole_trajectory.end());
+  result.state = slam.snapshot();
   result.counters = slam.counters();
   result.landmarks = slam.landmarks();
   if (slam.backEnd() != nullptr) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "semantic_mht_slam/common/state_archive.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -91,6 +93,12 @@ std::uint64_t Rng::poisson(double mean) {
   std::uint64_t count = 0;
   for (double product = uniform(); product > limit; product *= uniform()) ++count;
   return count;
+}
+
+void Rng::transfer(StateArchive& archive) {
+  archive(seed_);
+  for (std::uint64_t& word : state_) archive(word);
+  archive(spare_normal_, has_spare_normal_);
 }
 
 }  // namespace semantic_mht_slam

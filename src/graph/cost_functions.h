@@ -16,6 +16,12 @@ Matrix squareRootInformation(const Matrix& information) {
   return information.llt().matrixU();
 }
 
+/// The upper square root of an information matrix itself, for a cost that is made again from what it was.
+template <class Matrix>
+struct SquareRoot {
+  Matrix upper;
+};
+
 template <int kRows, int kCols>
 using RowMajor = Eigen::Matrix<double, kRows, kCols, (kCols == 1 ? Eigen::ColMajor : Eigen::RowMajor)>;
 
@@ -45,6 +51,11 @@ class RelativePose3Cost final : public ceres::SizedCostFunction<6, 7, 7> {
  public:
   RelativePose3Cost(const Pose& measured, const Matrix6d& information)
       : measured_(measured), sqrt_info_(squareRootInformation(information)) {}
+  RelativePose3Cost(const Pose& measured, const SquareRoot<Matrix6d>& root)
+      : measured_(measured), sqrt_info_(root.upper) {}
+
+  const Pose& measured() const { return measured_; }
+  const Matrix6d& squareRoot() const { return sqrt_info_; }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const auto relative = relativeError(blocks[0], blocks[1], measured_.rotation, measured_.translation_m);
@@ -77,6 +88,7 @@ class PointCost final : public ceres::SizedCostFunction<kDim, (kDim == 2 ? 3 : 7
 
   PointCost(const Point& measured_m, const Matrix& information)
       : measured_m_(measured_m), sqrt_info_(squareRootInformation(information)) {}
+  PointCost(const Point& measured_m, const SquareRoot<Matrix>& root) : measured_m_(measured_m), sqrt_info_(root.upper) {}
 
   const Point& measured() const { return measured_m_; }
   const Matrix& squareRoot() const { return sqrt_info_; }

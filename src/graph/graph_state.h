@@ -16,6 +16,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// One sighting of a landmark; its cost function is built once and lent to every problem that needs it.
 struct SightingFactor {
   int submap = 0;
@@ -62,6 +64,9 @@ struct GraphState {
   std::map<std::int64_t, LandmarkState> landmarks;
   std::map<std::int64_t, std::int64_t> merged_landmarks;  ///< number given up -> number that it was merged into
   std::deque<LoopState3> loops;
+
+  /// Into an empty state, or out of one.
+  void transfer(StateArchive& archive);
 
   /// The number under which a landmark is kept, or the given one if it was never merged.
   std::int64_t keptNumber(std::int64_t landmark) const;

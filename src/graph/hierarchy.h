@@ -12,6 +12,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Covariance of the error e (translation, rotation; see `BatchGraph`) of a relative pose, from that of a step of its
 /// end (rotation, translation in the world).
 PoseCov errorCov(const Pose& T_world_to, const Eigen::MatrixXd& step_cov);
@@ -60,6 +62,9 @@ class Hierarchy {
 
   bool isPending() const { return is_pending_; }
 
+  /// Into an empty hierarchy, or out of one.
+  void transfer(StateArchive& archive);
+
   /// True if links came or went or landmarks were merged since the skeleton was solved.
   bool hasNews() const { return is_pending_ || news_ > 0.0 || !touched_.empty(); }
 
@@ -67,6 +72,8 @@ class Hierarchy {
   struct LoopLink {
     std::optional<int> link;  ///< none within a chunk: the window optimisations take care of it
     bool is_settled = false;
+
+    void transfer(StateArchive& archive);
   };
 
   int chunkOf(int submap) const { return submap / config_.chunk_submaps; }

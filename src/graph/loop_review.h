@@ -8,6 +8,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Decides which loop closures of a growing graph take part: pairwise consistency among the newest ones (see
 /// `findConsistentLoops`), a bounded number, so that the time does not grow; older decisions stand unless the optimised
 /// estimate speaks against them.
@@ -37,6 +39,9 @@ class LoopReview {
 
   /// Covariance of odometry between two submaps, in `PoseCov` form.
   PoseCov odometryCov(int from, int to) const;
+
+  /// What was decided, with the loop closures of `graph`; odometry is extended again by whoever reads.
+  void transfer(StateArchive& archive, const GraphState& graph);
 
  private:
   const PoseGraphConfig& config_;

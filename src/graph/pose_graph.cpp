@@ -5,6 +5,9 @@
 
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/state_archive.h"
+
 #include "deadline.h"
 #include "hierarchy.h"
 #include "loop_review.h"
@@ -18,6 +21,14 @@ constexpr int kFullIterations = 50;
 constexpr double kFullTolerance = 1e-6;  // of the cost; what is left of the poses is a few centimetres
 constexpr int kRepairIterations = 1;     // an interpolated piece is so near its optimum that one step reaches it
 constexpr double kWindowShare = 0.5;     // of a time budget, so that loop closures get the rest
+
+/// As it was added, to begin the sums over it again.
+struct OdometryStep {
+  Pose T_previous_submap;
+  PoseCov cov;
+
+  void transfer(StateArchive& archive) { archive(T_previous_submap, cov); }
+};
 
 std::vector<int> range(int first, int end) {
   std::vector<int> numbers(end - first);
@@ -39,6 +50,7 @@ class PoseGraph::Impl {
   PoseGraphUpdate optimizeFully();
   Subgraph whole(GraphState& graph) const;
   std::vector<LoopDecision> decisions() const;
+  void transfer(StateArchive& archive);
 
   mutable GraphState graph_;  // lent to Ceres, whose interface takes mutable addresses also for evaluation
 
@@ -53,6 +65,7 @@ class PoseGraph::Impl {
   Hierarchy hierarchy_;
   int in_hierarchy_ = 0;
   std::vector<LoopState> reported_;
+  std::vector<OdometryStep> odometry_;
 };
 
 int PoseGraph::Impl::addSubmap(const SubmapNode& node) {
@@ -65,6 +78,7 @@ int PoseGraph::Impl::addSubmap(const SubmapNode& node) {
     submap.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_submap, node.odometry_cov.inverse());
   }
   for (const LandmarkSighting& sighting : node.sightings) graph_.addSighting(sighting);
+  odometry_.push_back({node.T_previous_submap, node.odometry_cov});
   review_.extendOdometry(node.T_previous_submap, node.odometry_cov, index == 0);
   return index;
 }
@@ -98,6 +112,29 @@ void PoseGraph::Impl::mergeLandmarks(std::int64_t merged, std::int64_t survivor)
   const std::int64_t to = graph_.keptNumber(survivor);
   require(graph_.landmarks.count(from) > 0 && graph_.landmarks.count(to) > 0, "only landmarks that exist are merged");
   if (from != to) hierarchy_.touch(graph_.mergeLandmarks(from, to));
+}
+
+void PoseGraph::Impl::transfer(StateArchive& archive) {
+  int window_submaps = config_.window_submaps;
+  int chunk_submaps = config_.chunk_submaps;
+  archive(window_submaps, chunk_submaps);
+  if (window_submaps != config_.window_submaps || chunk_submaps != config_.chunk_submaps) {
+    throw InputError("made with graph.window_submaps " + std::to_string(window_submaps) + " and graph.chunk_submaps " +
+                     std::to_string(chunk_submaps) + ", other ones than now");
+  }
+  archive(odometry_, graph_);
+  if (odometry_.size() != graph_.submaps.size()) StateArchive::fail("a graph with more submaps than odometry");
+  if (archive.isReading()) {
+    for (std::size_t i = 0; i < odometry_.size(); ++i) {
+      const auto& [T_previous_submap, cov] = odometry_[i];
+      review_.extendOdometry(T_previous_submap, cov, i == 0);
+      if (i > 0) {
+        graph_.submaps[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_submap, cov.inverse());
+      }
+    }
+  }
+  review_.transfer(archive, graph_);
+  archive(hierarchy_, in_hierarchy_, reported_);
 }
 
 /// True if the solution was not cut short.
@@ -232,6 +269,10 @@ PoseGraphUpdate PoseGraph::optimize() {
 }
 PoseGraphUpdate PoseGraph::optimizeFully() {
   return impl_->optimizeFully();
+}
+void PoseGraph::transfer(StateArchive& archive) {
+  if (archive.isReading() && submaps() > 0) throw std::logic_error("PoseGraph: a state is read into an empty graph");
+  impl_->transfer(archive);
 }
 int PoseGraph::submaps() const {
   return static_cast<int>(impl_->graph_.submaps.size());

@@ -16,6 +16,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Coarse pose graph: a node for the first submap of every chunk and condensed factors between them. The Ceres problem
 /// is kept from call to call; links are added and taken out in place.
 class Skeleton {
@@ -49,14 +51,21 @@ class Skeleton {
   };
   Outcome optimize(int max_iterations, double max_seconds);
 
+  /// Nodes and links with the order in which the solver sees them; into an empty skeleton, or out of one.
+  void transfer(StateArchive& archive);
+
  private:
   struct Link {
     std::unique_ptr<RelativePose3Cost> cost;
-    int from;
-    int to;
+    int from = 0;
+    int to = 0;
     bool is_robust = false;
     ceres::ResidualBlockId id = nullptr;  ///< none: not active
+
+    void transfer(StateArchive& archive);
   };
+
+  std::vector<int> activeLinks() const;
 
   const double* block(int node) const { return node == kWorld ? world_.data() : blocks_[node].data(); }
   double* block(int node) { return node == kWorld ? world_.data() : blocks_[node].data(); }

@@ -40,6 +40,16 @@ void syncFolderOf(const std::string& path) {
   ::close(handle);
 }
 
+void rename(const std::string& temporary, const std::string& path) {
+  if (::rename(temporary.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary.c_str());
+    errno = reason;
+    fail("cannot write", path);
+  }
+  syncFolderOf(path);
+}
+
 }  // namespace
 
 std::string readFile(const std::string& path) {
@@ -94,13 +104,20 @@ void writeFileAtomically(const std::string& path, std::string_view content) {
     throw;
   }
   ::close(file);
-  if (::rename(temporary.c_str(), path.c_str()) != 0) {
-    const int reason = errno;
+  rename(temporary, path);
+}
+
+void moveIntoPlace(const std::string& temporary, const std::string& path) {
+  const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool is_synced = file >= 0 && ::fsync(file) == 0;
+  const int reason = errno;
+  if (file >= 0) ::close(file);
+  if (!is_synced) {
     ::unlink(temporary.c_str());
     errno = reason;
     fail("cannot write", path);
   }
-  syncFolderOf(path);
+  rename(temporary, path);
 }
 
 void prepareOutputFolder(const std::string& path) {

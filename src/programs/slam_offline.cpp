@@ -15,6 +15,7 @@
 #include "semantic_mht_slam/io/dataset.h"
 #include "semantic_mht_slam/io/staged_folder.h"
 #include "semantic_mht_slam/ros/bag_file.h"
+#include "semantic_mht_slam/ros/map_file.h"
 
 #include "program.h"
 #include "progress.h"
@@ -27,11 +28,13 @@ namespace {
 constexpr const char* kUsage =
     "Runs the system on a data-set folder or a bag, as fast as it goes.\n"
     "  slam_offline --dataset DIR [--objects FILE] [--odometry FILE] --output DIR\n"
-    "  slam_offline --bag FILE --output DIR\n";
+    "  slam_offline --bag FILE --output DIR\n"
+    "With --load MAP it goes on with the map of an earlier run (DIR/map.bag).\n";
 
 struct Arguments {
   std::string config = packageConfigFile("kitti.yaml");
   std::string bag;
+  std::string map;
   std::string output;
   DatasetFiles dataset;
   std::vector<std::string> settings;
@@ -48,6 +51,7 @@ po::options_description makeOptions(Arguments& arguments) {
   add("odometry", po::value(&arguments.dataset.odometry)->value_name("FILE"),
       "odometry in KITTI format; default: odometry/vo_orb.txt");
   add("bag", po::value(&arguments.bag)->value_name("FILE"), "bag with objects and odometry, in place of --dataset");
+  add("load", po::value(&arguments.map)->value_name("MAP"), "map file to go on with");
   add("method", po::value(&arguments.method)->value_name("NAME"), "the same as --set method=NAME");
   add("seed", po::value(&arguments.seed)->value_name("N"), "the same as --set seed=N");
   add("set", po::value(&arguments.settings)->value_name("KEY=VALUE")->composing(),
@@ -97,13 +101,18 @@ int run(int argc, char** argv) {
   const ClassTable classes = loadClassTable(config, config_folder);
   const SlamConfig slam_config = loadableSlamConfig(config, config_folder);
   const Recording recording = loadRecording(arguments, classes, config);
+  std::optional<LoadedMap> map;
+  if (!arguments.map.empty()) map = readMapFile(arguments.map, config, classes, [] { return true; });
   StagedFolder output(arguments.output);
 
   Progress progress("frames");
-  const RunResult result =
-      runOffline(recording, slam_config, classes, [&](std::size_t done, std::size_t all) { progress(done, all); });
+  const RunResult result = runOffline(
+      recording, slam_config, classes, [&](std::size_t done, std::size_t all) { progress(done, all); },
+      map ? &map->state : nullptr);
   writeResultFiles(output.staging(), recording, result, config, classes);
-  const std::size_t map_bytes = writeMapFile(output.staging() + "/map.bag", result, classes, config.node);
+  const std::size_t map_bytes = writeMapFile(
+      output.staging() + "/map.bag", {result.state, result.landmarks, result.whole_trajectory, result.submaps}, config,
+      classes);
   const std::optional<TrajectoryError> error = scoreRun(recording, result.trajectory);
   writeReport(output.staging(), result, error, config, map_bytes);
   output.commit();

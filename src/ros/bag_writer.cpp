@@ -1,18 +1,10 @@
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <functional>
-#include <memory>
-
 #include <boost/make_shared.hpp>
 #include <rosbag/bag.h>
 #include <std_msgs/Time.h>
 #include <tf2_msgs/TFMessage.h>
-#include <unistd.h>
 
 #include "semantic_mht_slam/common/error.h"
-#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/ros/atomic_bag.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
 
@@ -42,30 +34,6 @@ void writeLatched(rosbag::Bag& bag, const std::string& topic, Stamp stamp, const
 std::vector<StampedPose> shifted(std::vector<StampedPose> trajectory, Stamp time_origin) {
   for (StampedPose& pose : trajectory) pose.stamp += time_origin;
   return trajectory;
-}
-
-/// Lets `fill` write a bag beside `path`, then renames it.
-void writeBagAtomically(const std::string& path, const std::function<void(rosbag::Bag&)>& fill) {
-  requireReplaceable(path);
-  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
-  // The destructor of a bag that could not be written throws, which would end the program: such a bag is given up
-  // instead of destroyed.
-  auto bag = std::make_unique<rosbag::Bag>();
-  try {
-    bag->open(temporary, rosbag::bagmode::Write);
-    fill(*bag);
-    bag->close();
-  } catch (const std::exception& error) {
-    const std::string reason = error.what();
-    static_cast<void>(bag.release());
-    std::remove(temporary.c_str());
-    throw InputError("cannot write '" + path + "': " + reason);
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
-    throw InputError("cannot write '" + path + "': " + reason);
-  }
 }
 
 void writeHead(rosbag::Bag& bag, const Recording& recording, const NodeConfig& frames, const BagLayout& layout,
@@ -112,18 +80,6 @@ void writeBag(const std::string& path, const Recording& recording, const ClassTa
       }
     }
   });
-}
-
-std::size_t writeMapFile(const std::string& path, const RunResult& result, const ClassTable& classes,
-                         const NodeConfig& frames) {
-  writeBagAtomically(path, [&](rosbag::Bag& bag) {
-    bag.setCompression(rosbag::compression::BZ2);
-    const Stamp last = result.trajectory.empty() ? 0 : result.trajectory.back().stamp;
-    const Stamp stamp = std::max<Stamp>(1, last);  // ROS time cannot be 0
-    bag.write("/map", toRosTime(stamp), toMessage(stamp, frames.map_frame, classes, result.landmarks, result.submaps));
-    bag.write("/trajectory", toRosTime(stamp), toPath(result.trajectory, frames.map_frame));
-  });
-  return static_cast<std::size_t>(std::filesystem::file_size(path));
 }
 
 }  // namespace semantic_mht_slam

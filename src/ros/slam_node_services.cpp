@@ -1,4 +1,6 @@
+#include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/map_file.h"
 #include "semantic_mht_slam/ros/slam_node.h"
 
 // What other nodes ask of the node: its services, and the status behind its diagnostics.
@@ -7,6 +9,8 @@ namespace semantic_mht_slam {
 void SlamNode::advertiseServices() {
   services_.push_back(handle_.advertiseService("finish_submap", &SlamNode::finishSubmap, this));
   services_.push_back(handle_.advertiseService("reset", &SlamNode::reset, this));
+  services_.push_back(handle_.advertiseService("save_map", &SlamNode::saveMap, this));
+  services_.push_back(handle_.advertiseService("load_map", &SlamNode::loadMap, this));
   services_.push_back(handle_.advertiseService("set_mode", &SlamNode::setMode, this));
 }
 
@@ -37,6 +41,52 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   noteStatus();
   response.success = true;
   response.message = "a new map begins; the old one had " + std::to_string(landmarks) + " landmarks";
+  return true;
+}
+
+bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
+  SavedMap map;
+  {
+    const std::lock_guard<TicketMutex> lock(slam_mutex_);
+    map = mapOf(*slam_);
+  }
+  try {
+    response.bytes = writeMapFile(request.path, map, config_, classes_);
+  } catch (const InputError& error) {
+    response.message = error.what();
+    return true;
+  }
+  response.success = true;
+  response.message = std::to_string(map.landmarks.size()) + " landmarks of " + std::to_string(map.submaps) +
+                     " finished submaps, and the open one, are in '" + request.path + "'";
+  return true;
+}
+
+bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
+  std::unique_ptr<Slam> loaded;
+  bool has_same_parameters = true;
+  try {
+    const LoadedMap map = readMapFile(request.path, config_, classes_, [] { return ros::ok(); });
+    has_same_parameters = map.has_same_parameters;
+    try {
+      loaded = std::make_unique<Slam>(config_.slam, classes_, map.state);
+    } catch (const std::exception& error) {
+      throw InputError(request.path + ": " + error.what());
+    }
+  } catch (const InputError& error) {
+    response.message = std::string(error.what()) + "; the running map stays";
+    return true;
+  }
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  slam_ = std::move(loaded);
+  waiting_objects_.clear();
+  published_odometry_ = 0;
+  publisher_.showLoaded(*slam_, live_.get());
+  noteStatus();
+  response.success = true;
+  response.message = "the map has " + std::to_string(publisher_.landmarks()) + " landmarks of " +
+                     std::to_string(slam_->map().submaps().size()) + " finished submaps";
+  if (!has_same_parameters) response.message += "; it was made with other parameters than the present ones";
   return true;
 }
 

@@ -95,4 +95,10 @@ void SlamPublisher::startAgain(const Slam& slam) {
   hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, 0, {}));
 }
 
+void SlamPublisher::showLoaded(const Slam& slam, const LiveConfig& live) {
+  startAgain(slam);
+  if (slam.backEnd() != nullptr) published_closures_ = slam.backEnd()->closures().size();  // were published long ago
+  publishMap(slam, live);
+}
+
 }  // namespace semantic_mht_slam

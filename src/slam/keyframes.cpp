@@ -73,17 +73,12 @@ class SightingCollector {
         Eigen::Vector3d(config_.sighting_floor_m, config_.sighting_floor_m, config_.vertical_floor_m)
             .cwiseAbs2()
             .asDiagonal();
-    const Eigen::Matrix3d scene_floor =
-        config_.sighting_floor_m * config_.sighting_floor_m * Eigen::Matrix3d::Identity();
-    const Eigen::Matrix3d R = T_keyframe_submap_.rotation.toRotationMatrix();
     for (const auto& [id, sum] : sums_) {
       const Eigen::Matrix3d cov = sum.information.inverse();
       const ClassIndex class_index = sum.landmark->mostLikelyClass();
       keyframe.sightings.push_back(
           {id, class_index, cov * sum.weighted, 0.5 * (cov + cov.transpose()) + floor, sum.count});
-      const Eigen::Matrix3d fused_cov = R * sum.landmark->position.cov_m2 * R.transpose();
-      keyframe.scene.objects.push_back({T_keyframe_submap_ * sum.landmark->position.mean_m,
-                                        0.5 * (fused_cov + fused_cov.transpose()) + scene_floor, class_index, id});
+      keyframe.scene.objects.push_back(sceneObject(*sum.landmark, T_keyframe_submap_, config_.sighting_floor_m));
     }
   }
 
@@ -106,6 +101,14 @@ void describe(KeyframeConfig& config, Fields& fields) {
              "Growth of the odometry's position error with the square root of the distance.");
   fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {1e-6, 1.0},
              "Growth of the odometry's rotation error with the square root of the distance.");
+}
+
+SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_submap, double floor_m) {
+  const Eigen::Matrix3d R = T_keyframe_submap.rotation.toRotationMatrix();
+  const Eigen::Matrix3d cov = R * landmark.position.cov_m2 * R.transpose();
+  return {T_keyframe_submap * landmark.position.mean_m,
+          0.5 * (cov + cov.transpose()) + floor_m * floor_m * Eigen::Matrix3d::Identity(), landmark.mostLikelyClass(),
+          landmark.id};
 }
 
 std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m,

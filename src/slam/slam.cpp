@@ -41,7 +41,8 @@ void describe(SlamConfig& config, Fields& fields) {
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)
-    : assembler_(config.input),
+    : method_(config.method),
+      assembler_(config.input),
       rng_(config.seed),
       keyframe_config_(config.back_end.keyframe),
       keep_prob_(config.mapper.detection.keep_prob),
@@ -110,7 +111,7 @@ EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {
     if ((landmark.position.mean_m - prior.T_a_b.translation_m).head<2>().norm() > radius_m) continue;
     earlier.landmarks.push_back(transformed(T_submap_map, landmark));
   }
-  if (map_.submaps().empty()) prediction_ = next_prediction_;
+  if (submap_frames_.empty()) prediction_ = next_prediction_;  // no submap before it is still being finished
   return earlier;
 }
 

@@ -12,8 +12,9 @@ namespace {
 constexpr double kRadius_m = 20.0;
 
 /// Drives rounds on a circle along which poles stand, by exact odometry.
-Slam driveRounds(double rounds) {
-  Slam slam(SlamConfig{}, makeTwoClasses());
+std::unique_ptr<Slam> driveRounds(double rounds) {
+  auto driven = std::make_unique<Slam>(SlamConfig{}, makeTwoClasses());
+  Slam& slam = *driven;
   Rng rng(5);
   std::vector<Eigen::Vector3d> poles;
   for (int i = 0; i < 40; ++i) {
@@ -39,7 +40,7 @@ Slam driveRounds(double rounds) {
     slam.addDetections(stamp, detections);
   }
   slam.finish();
-  return slam;
+  return driven;
 }
 
 const visualization_msgs::Marker& find(const visualization_msgs::MarkerArray& array, const std::string& name) {
@@ -50,7 +51,8 @@ const visualization_msgs::Marker& find(const visualization_msgs::MarkerArray& ar
 }
 
 TEST(GraphViewTest, EverySubmapHasAnOutlineAroundItsKeyframes) {
-  const Slam slam = driveRounds(1.0);
+  const auto driven = driveRounds(1.0);
+  const Slam& slam = *driven;
   const std::size_t submaps = slam.map().submaps().size();
   ASSERT_GE(submaps, 2U);
   const visualization_msgs::MarkerArray array = toSubmapMarkers(slam, "map");
@@ -61,7 +63,8 @@ TEST(GraphViewTest, EverySubmapHasAnOutlineAroundItsKeyframes) {
 }
 
 TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
-  const Slam slam = driveRounds(2.5);
+  const auto driven = driveRounds(2.5);
+  const Slam& slam = *driven;
   ASSERT_NE(slam.backEnd(), nullptr);
   const std::size_t all = slam.backEnd()->closures().size();
   const std::size_t accepted = acceptedClosures(slam);

@@ -23,7 +23,7 @@ struct SubmapResult {
 
 /// What a run over a recording gave.
 struct RunResult {
-  std::vector<StampedPose> trajectory;         ///< T_map_base at every odometry sample that was used
+  std::vector<StampedPose> trajectory;  ///< T_map_base at every odometry sample of the recording that was used
   std::vector<StampedPose> online_trajectory;  ///< T_map_base as it was known at each of these moments
   std::vector<LoopClosureResult> loop_closures;
   InputCounters counters;
@@ -31,7 +31,9 @@ struct RunResult {
   std::vector<DetectionAssociation> associations;  ///< of every detection that was used
   std::size_t submaps = 0;
   std::vector<SubmapResult> submap_checks;  ///< of the submaps with frames; none without map
-  std::vector<int> hypotheses;              ///< living ones after each odometry sample
+  SlamState state;                            ///< to go on from
+  std::vector<StampedPose> whole_trajectory;  ///< with that of the map that the run began with
+  std::vector<int> hypotheses;                ///< living ones after each odometry sample
   std::vector<double> step_ms;  ///< wall time of each step: an odometry sample and the detections up to its stamp
   double seconds = 0.0;         ///< wall time of the run, without reading and writing files
 };
@@ -40,8 +42,9 @@ struct RunResult {
 using ProgressCallback = std::function<void(std::size_t, std::size_t)>;
 
 /// Feeds a recording to the estimator in the order of stamps, as fast as it goes.
-/// Throws InputError if nothing of the odometry could be used.
+/// With `start`, goes on from that state; frames are counted on, too. Throws InputError if nothing of the odometry could
+/// be used, or if the state does not fit.
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
-                     const ProgressCallback& progress);
+                     const ProgressCallback& progress, const SlamState* start = nullptr);
 
 }  // namespace semantic_mht_slam

@@ -5,6 +5,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Seeded random source with the same sequence on every platform and standard library
 /// (xoshiro256** by Blackman and Vigna, seeded through SplitMix64).
 ///
@@ -38,6 +40,9 @@ class Rng {
 
   /// Poisson distributed count; `mean` in [0, 700], else std::invalid_argument.
   std::uint64_t poisson(double mean);
+
+  /// Where in its sequence the source is (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
  private:
   std::uint64_t seed_;

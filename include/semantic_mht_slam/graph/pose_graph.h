@@ -13,6 +13,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Covariance of the error of a relative pose T_from_to: order translation (m), rotation (rad), both in the frame `to`,
 /// the error being a small step on the right of the measurement.
 using PoseCov = Eigen::Matrix<double, 6, 6>;
@@ -143,6 +145,11 @@ class PoseGraph {
 
   /// Covariance of a landmark in the world frame; empty if it is unknown or the problem is singular.
   std::optional<Eigen::Matrix3d> landmarkCovariance(std::int64_t id) const;
+
+  /// Everything that was added and estimated, so that a graph that reads it goes on to the last bit as the one that
+  /// wrote it (see `StateArchive`). Reads only into an empty graph, else throws std::logic_error; throws InputError
+  /// also if the state was written with other sizes of windows or chunks.
+  void transfer(StateArchive& archive);
 
  private:
   class Impl;

@@ -22,6 +22,10 @@ void requireReplaceable(const std::string& path);
 /// or the whole new one. Throws InputError naming the file and the system's reason.
 void writeFileAtomically(const std::string& path, std::string_view content);
 
+/// Gives a complete temporary file beside `path` that name, after its content is on the disk. Throws InputError naming
+/// `path` and the system's reason; then the temporary file is removed and `path` is as it was.
+void moveIntoPlace(const std::string& temporary, const std::string& path);
+
 /// Creates a folder and its parents unless they exist, and makes sure that files can be written to it.
 /// Throws InputError naming the folder and the reason.
 void prepareOutputFolder(const std::string& path);

@@ -12,6 +12,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// How the bias of centroids is found out while driving.
 struct BiasConfig {
   bool enabled = true;
@@ -79,6 +81,9 @@ class CentroidBias {
 
   /// Relative error of the odometry's scale that all stretches share (true length = (1 + scale) times odometry's).
   double odometryScale() const;
+
+  /// All that it has learned (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
  private:
   void solve();

@@ -10,6 +10,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Detections that did not come: negative evidence.
 struct DetectionConfig {
   bool missed_detections = true;
@@ -38,6 +40,9 @@ class DetectionRate {
   /// P_D at a place in the base frame.
   double prob(ClassIndex class_index, const Eigen::Vector3d& position_m) const;
 
+  /// All that it has learned (see `StateArchive`).
+  void transfer(StateArchive& archive);
+
  private:
   static constexpr int kRangeBins = 5;
   static constexpr int kBearingBins = 3;  ///< ahead, abeam, behind
@@ -45,6 +50,8 @@ class DetectionRate {
   struct Cell {
     double detected = 0.0;
     double frames = 0.0;
+
+    void transfer(StateArchive& archive);
   };
 
   int cellOf(ClassIndex class_index, double range_m, const Eigen::Vector3d& position_m) const;

@@ -11,6 +11,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// How the detector's noise is found out while driving.
 struct CalibrationConfig {
   bool enabled = true;
@@ -28,6 +30,9 @@ class RunningMedian {
   void add(double value, int count = 1);
   double median() const;
   int count() const { return count_; }
+
+  /// All that was added (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
  private:
   static constexpr int kBins = 200;
@@ -53,6 +58,9 @@ class DetectorCalibration {
   /// Growth of a centroid's variance with the distance driven, m^2/m.
   double wanderVariancePerMetre(ClassIndex class_index) const;
 
+  /// All that it has learned (see `StateArchive`).
+  void transfer(StateArchive& archive);
+
  private:
   static constexpr int kRangeBins = 3;
 
@@ -60,11 +68,15 @@ class DetectorCalibration {
     Pose T_odom_base;
     std::vector<Eigen::Vector3d> positions_m;
     std::vector<ClassIndex> classes;
+
+    void transfer(StateArchive& archive);
   };
   struct ClassStatistics {
     std::array<std::array<RunningMedian, 3>, kRangeBins> noise;  ///< by range, then direction
     RunningMedian wander;                                        ///< horizontal, over `lag_frames`
     RunningMedian wander_distance_m;
+
+    void transfer(StateArchive& archive);
   };
 
   void compare(const PastFrame& past, const PastFrame& now, bool is_lagged);

@@ -12,6 +12,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// The multiple-hypothesis tree of one submap (paper, section II): its leaves, weighted, by falling weight.
 class MultiHypothesisTree {
  public:
@@ -31,6 +33,9 @@ class MultiHypothesisTree {
 
   /// Where the submap lies in the earlier map.
   const MapBranching& mapBranching() const { return branching_; }
+
+  /// The leaves and all that was learned (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
  private:
   void predict(MapHypothesis& hypothesis, const TreeInput& input) const;

@@ -12,6 +12,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Log evidence of what a hypothesis expected by the earlier map and found or missed. The share of the earlier
 /// landmarks that can be seen from this pass is not known and common to all (uniform prior): many may be hidden
 /// together, or stand in another street.
@@ -48,6 +50,9 @@ class MapBranching {
   /// The alignment on which most weight agrees, from all landmarks of the submap; empty if no leaf has one. `leaves`
   /// are normalised.
   std::optional<MapConclusion> conclude(const std::vector<MapHypothesis>& leaves) const;
+
+  /// The earlier map of the present submap, and when it is looked at next (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
   /// The landmark of the earlier map with an id that it has. Throws std::out_of_range for others.
   const MixtureLandmark& landmark(LandmarkId id) const {

@@ -15,6 +15,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Builds submaps: stretches of fixed travelled length, each with a hypothesis tree of its own (paper, section II).
 class Mapper {
  public:
@@ -46,12 +48,18 @@ class Mapper {
   /// Bias of centroids, as estimated from the finished submaps.
   const CentroidBias& centroidBias() const { return bias_; }
 
+  /// All that a mapper of the same class table needs to go on as if it had never stopped, the open submap included
+  /// (see `StateArchive`). Whoever is asked for the earlier map is not part of it.
+  void transfer(StateArchive& archive);
+
  private:
   /// A frame whose detections say something about the centroids' bias.
   struct Keyframe {
     std::size_t place = 0;  ///< in the frames of the submap
     Pose T_submap_base;     ///< by the odometry
     Detections detections;  ///< as they came
+
+    void transfer(StateArchive& archive);
   };
 
   void begin(Stamp stamp, const Pose& T_odom_base);

@@ -4,6 +4,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Transitions and observation likelihoods of the loop filter. The transitions are those of Angeli et al., "Fast and
 /// Incremental Method for Loop-Closure Detection Using Bags of Visual Words" (IEEE T-RO 2008).
 struct LoopFilterConfig {
@@ -34,6 +36,9 @@ class LoopFilter {
 
   /// Forgets everything, as after a gap in the drive.
   void reset() { loop_prob_ = 0.0; }
+
+  /// The belief (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
  private:
   LoopFilterConfig config_;

@@ -16,6 +16,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// Parameters of the paper's place recognition.
 struct PaperChainConfig {
   int similar_submaps = 12;
@@ -64,6 +66,9 @@ class PaperChain {
 
   /// Forgets the belief of the filter, as after a gap in the drive or for a submap that was not checked.
   void resetFilter() { filter_.reset(); }
+
+  /// What the loop filter believes, which only the order of queries tells (see `StateArchive`).
+  void transfer(StateArchive& archive);
 
  private:
   struct Place {

@@ -16,10 +16,18 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// What a finished submap is besides its keyframes.
 struct SubmapSummary {
   ClassHistogram histogram;  ///< of its landmarks; used by the paper's chain alone
   bool is_checked = true;    ///< false: its keyframes are only taken in, to be found later
+};
+
+/// The places of a finished submap, as they were taken in.
+struct PlacesOfSubmap {
+  ClassHistogram histogram;  ///< of its landmarks
+  std::vector<Keyframe> keyframes;
 };
 
 /// Finds earlier keyframes that show the place of a new one, and the rigid transform between them; a doubtful one is
@@ -45,6 +53,10 @@ class PlaceRecognizer {
   /// Where a scene is among all keyframes, without any prior: its descriptor is compared with that of every keyframe.
   /// Candidates by falling score, `query` being the number of keyframes; the first is accepted if it stands alone.
   std::vector<PlaceMatch> locate(const Scene& scene, const std::vector<Pose>& T_map_keyframe) const;
+
+  /// The state without the keyframes, which are given as they were added (with their scenes): into an empty recogniser,
+  /// or out of one (see `StateArchive`).
+  void transfer(StateArchive& archive, std::vector<PlacesOfSubmap> submaps);
 
   std::size_t keyframes() const { return places_.size(); }
 

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "semantic_mht_slam/app/offline_runner.h"
 #include "semantic_mht_slam/app/recording.h"
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/models/class_table.h"
@@ -31,9 +30,5 @@ void writeBag(const std::string& path, const Recording& recording, const ClassTa
 /// connected, odometry in other frames than configured and class ids that the table lacks.
 Recording readBag(const std::string& path, const ClassTable& classes, const NodeConfig& frames,
                   const BagLayout& layout);
-
-/// Writes the map file of a run: landmarks with the class table, and the trajectory. Returns its size in bytes.
-std::size_t writeMapFile(const std::string& path, const RunResult& result, const ClassTable& classes,
-                         const NodeConfig& frames);
 
 }  // namespace semantic_mht_slam

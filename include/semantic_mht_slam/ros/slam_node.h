@@ -10,6 +10,8 @@
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
+#include <semantic_mht_slam/LoadMap.h>
+#include <semantic_mht_slam/SaveMap.h>
 #include <semantic_mht_slam/SetMode.h>
 
 #include "semantic_mht_slam/app/system_config.h"
@@ -70,6 +72,8 @@ class SlamNode {
   // Services, timers and diagnostics, in a spinner thread.
   bool finishSubmap(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool saveMap(SaveMap::Request& request, SaveMap::Response& response);
+  bool loadMap(LoadMap::Request& request, LoadMap::Response& response);
   bool setMode(SetMode::Request& request, SetMode::Response& response);
   void publishSlowTopics(const ros::WallTimerEvent& event);
   NodeStatus status();

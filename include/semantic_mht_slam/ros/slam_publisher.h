@@ -38,6 +38,9 @@ class SlamPublisher {
   /// A new map begins with `slam`: empties what is latched.
   void startAgain(const Slam& slam);
 
+  /// A loaded map takes the place of the one before.
+  void showLoaded(const Slam& slam, const LiveConfig& live);
+
   /// Landmarks of the newest published map.
   std::size_t landmarks() const { return map_.landmarks.size(); }
 

@@ -13,8 +13,11 @@
 #include "semantic_mht_slam/slam/keyframes.h"
 #include "semantic_mht_slam/slam/loop_closure_record.h"
 #include "semantic_mht_slam/slam/revisit_search.h"
+#include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
+
+class StateArchive;
 
 /// Everything behind the mapper.
 struct BackEndConfig {
@@ -82,6 +85,13 @@ class BackEnd {
   /// Every finished submap, by its index.
   const std::vector<SubmapCheck>& checks() const { return checks_; }
 
+  /// Keyframes and closures: into an empty back end, or out of one (see `StateArchive`). `submaps` are those that the
+  /// keyframes were cut from. Of closures that were refused only what people look at is kept.
+  void transferKeyframes(StateArchive& archive, const SubmapArchive& submaps);
+
+  /// The pose graph and the state of place recognition; to be read after the keyframes.
+  void transferGraph(StateArchive& archive, const SubmapArchive& submaps);
+
   /// Corrected position of a landmark, map frame; empty if it is not in the graph.
   std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;
 
@@ -95,6 +105,7 @@ class BackEnd {
   bool mergeLandmarks(LandmarkId merged, LandmarkId survivor);
   void readBack();
   LandmarkId resolve(LandmarkId id) const;
+  int submapOf(int keyframe) const;
 
   BackEndConfig config_;
   ClassTable classes_;

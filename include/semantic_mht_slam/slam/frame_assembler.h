@@ -10,6 +10,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// How detections find their odometry.
 struct FrameAssemblerConfig {
   double max_odometry_gap_s = 1.0;
@@ -52,11 +54,16 @@ class FrameAssembler {
 
   const InputCounters& counters() const { return counters_; }
 
+  /// What waits, the odometry that is kept, and the counters (see `StateArchive`).
+  void transfer(StateArchive& archive);
+
  private:
   struct WaitingFrame {
-    std::size_t index;
-    Stamp stamp;
+    std::size_t index = 0;
+    Stamp stamp = 0;
     Detections detections;
+
+    void transfer(StateArchive& archive);
   };
 
   std::optional<Pose> interpolatedOdometry(Stamp stamp);

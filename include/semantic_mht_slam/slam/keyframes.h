@@ -40,6 +40,9 @@ struct MapKeyframe {
   Scene scene;  ///< the same landmarks, positions by all detections of the submap and before
 };
 
+/// A landmark of a submap as the scene of a keyframe has it; `floor_m` is added to its deviation.
+SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_submap, double floor_m);
+
 /// Noise of a detection's centroid, base frame, m^2.
 using DetectionCov = std::function<Eigen::Matrix3d(const Detection&)>;
 

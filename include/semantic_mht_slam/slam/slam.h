@@ -12,9 +12,12 @@
 #include "semantic_mht_slam/slam/back_end.h"
 #include "semantic_mht_slam/slam/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
+#include "semantic_mht_slam/slam/slam_state.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
+
+class StateArchive;
 
 /// How the trajectory is estimated.
 enum class Method {
@@ -48,6 +51,14 @@ class Slam {
   Slam(const SlamConfig& config, const ClassTable& classes);
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
+
+  /// Goes on where `state` was taken. Parameters may differ from those that it was made with, but for the method, the
+  /// class table and the sizes of the pose graph's chunks; with the same ones the result is the same to the last bit as
+  /// without the interruption. Throws InputError if the state is broken, newer or does not fit.
+  Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state);
+
+  /// Everything that is needed to go on from here.
+  SlamState snapshot() const;
 
   /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used.
   bool addOdometry(const StampedPose& T_odom_base);
@@ -88,11 +99,27 @@ class Slam {
   const InputCounters& counters() const { return assembler_.counters(); }
 
  private:
+  using SectionTransfer = void (Slam::*)(StateArchive& archive);
+
+  /// Names of the sections in the order in which they are read, with their versions.
+  struct Section {
+    const char* name;
+    int version;
+    SectionTransfer transfer;
+  };
+  static const std::vector<Section>& sections();
+
+  void transferInput(StateArchive& archive);
+  void transferSubmaps(StateArchive& archive);
+  void transferKeyframes(StateArchive& archive);
+  void transferGraph(StateArchive& archive);
+  void transferMapper(StateArchive& archive);
   void processReadyFrames();
   void take(Submap submap);
   EarlierMap earlierMap(const Pose& T_odom_submap);
   std::vector<CorrectionAnchor> correctionAnchors() const;
 
+  Method method_;
   FrameAssembler assembler_;
   Rng rng_;
   std::optional<Mapper> mapper_;

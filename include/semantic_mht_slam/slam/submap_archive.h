@@ -9,6 +9,8 @@
 
 namespace semantic_mht_slam {
 
+class StateArchive;
+
 /// The finished submaps and what they know of each landmark. Merged ids stay resolvable.
 class SubmapArchive {
  public:
@@ -26,6 +28,9 @@ class SubmapArchive {
   /// of a submap by its index.
   std::vector<MixtureLandmark> landmarks(const std::function<Pose(int)>& T_map_submap) const;
 
+  /// A landmark of a submap as the submap has it, by the id that it had then; null if the submap lacks it.
+  static const MixtureLandmark* findLandmark(const Submap& submap, LandmarkId id);
+
   /// The landmark that an id stands for now: itself, or the one that it was merged into.
   LandmarkId resolve(LandmarkId id) const;
 
@@ -33,11 +38,16 @@ class SubmapArchive {
   /// positives and for landmarks that did not make it into the map.
   std::vector<DetectionAssociation> associations() const;
 
+  /// All submaps and landmarks (see `StateArchive`).
+  void transfer(StateArchive& archive);
+
  private:
   struct Entry {
     int submap = 0;  ///< index in `submaps_`
     MixtureLandmark landmark;
   };
+
+  void transferEntries(StateArchive& archive);
 
   bool isKept(LandmarkId id) const;
 

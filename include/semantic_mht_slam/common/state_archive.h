@@ -1,0 +1,244 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/common/stamped_pose.h"
+
+namespace semantic_mht_slam {
+
+/// Values to bytes and back, without loss. One function a type, `transfer(archive, value)` or a member
+/// `transfer(archive)`, serves both directions, so that what is written and what is read cannot differ; a writing
+/// archive changes no value. Integers take as many bytes as they need, a double eight, a square matrix only what its
+/// form (zero, diagonal, symmetric, upper triangular) leaves open.
+///
+/// Reading bytes that are no such state throws InputError; whoever reads gives what has been read so far up.
+class StateArchive {
+ public:
+  /// Writes.
+  StateArchive() = default;
+
+  /// Reads; `bytes` must live as long as the archive.
+  explicit StateArchive(std::string_view bytes) : is_reading_(true), input_(bytes) {}
+
+  bool isReading() const { return is_reading_; }
+
+  /// What was written.
+  const std::string& written() const { return output_; }
+
+  /// Throws InputError unless everything was read.
+  void requireEnd() const;
+
+  /// Throws InputError: the bytes are no state of what is being read.
+  [[noreturn]] static void fail(const std::string& what);
+
+  /// Transfers several values in their order.
+  template <class First, class Second, class... Others>
+  void operator()(First& first, Second& second, Others&... others) {
+    (*this)(first);
+    (*this)(second, others...);
+  }
+
+  template <class Value>
+  void operator()(Value& value) {
+    if constexpr (std::is_same_v<Value, double>) {
+      number(value);
+    } else if constexpr (std::is_enum_v<Value>) {
+      auto code = static_cast<std::underlying_type_t<Value>>(value);
+      (*this)(code);
+      value = static_cast<Value>(code);
+    } else if constexpr (std::is_integral_v<Value>) {
+      integer(value);
+    } else if constexpr (std::is_base_of_v<Eigen::EigenBase<Value>, Value>) {
+      matrix(value);
+    } else if constexpr (HasTransfer<Value>::value) {
+      value.transfer(*this);
+    } else {
+      transfer(*this, value);
+    }
+  }
+
+  /// The number of elements that follow, each of at least one byte.
+  std::size_t count(std::size_t elements);
+
+  void transferText(std::string& text);
+
+ private:
+  template <class Value, class = void>
+  struct HasTransfer : std::false_type {};
+  template <class Value>
+  struct HasTransfer<Value, std::void_t<decltype(std::declval<Value&>().transfer(std::declval<StateArchive&>()))>>
+      : std::true_type {};
+
+  void number(double& value);
+  std::uint64_t varint(std::uint64_t value);
+  std::uint8_t byte(std::uint8_t value);
+
+  template <class Integer>
+  void integer(Integer& value) {
+    // Zigzag: small numbers of either sign become small codes.
+    const auto wide = static_cast<std::int64_t>(value);
+    const std::uint64_t code = varint((static_cast<std::uint64_t>(wide) << 1) ^ static_cast<std::uint64_t>(wide >> 63));
+    if (!is_reading_) return;
+    const auto decoded = static_cast<std::int64_t>((code >> 1) ^ (~(code & 1) + 1));
+    value = static_cast<Integer>(decoded);
+    if (static_cast<std::int64_t>(value) != decoded) fail("a number is out of range");
+  }
+
+  /// What of a square matrix is written.
+  enum class Form : std::uint8_t { kFull, kZero, kDiagonal, kSymmetric, kUpper };
+
+  template <class Matrix>
+  static Form formOf(const Matrix& matrix);
+  template <class Matrix>
+  void resize(Matrix& values);
+  template <class Matrix>
+  void matrix(Matrix& values);
+
+  static constexpr Eigen::Index kMaxSide = 4096;
+
+  bool is_reading_ = false;
+  std::string_view input_;
+  std::string output_;
+};
+
+void transfer(StateArchive& archive, std::string& text);
+void transfer(StateArchive& archive, Pose& pose);
+void transfer(StateArchive& archive, StampedPose& pose);
+void transfer(StateArchive& archive, Gaussian3& gaussian);
+
+template <class A, class B>
+void transfer(StateArchive& archive, std::pair<A, B>& pair) {
+  archive(pair.first, pair.second);
+}
+
+template <class Value, std::size_t kSize>
+void transfer(StateArchive& archive, std::array<Value, kSize>& values) {
+  for (Value& value : values) archive(value);
+}
+
+template <class Value>
+void transfer(StateArchive& archive, std::optional<Value>& value) {
+  bool has_value = value.has_value();
+  archive(has_value);
+  if (archive.isReading()) value = has_value ? std::optional<Value>(std::in_place) : std::nullopt;
+  if (has_value) archive(*value);
+}
+
+/// Elements one by one, so that a broken count cannot ask for more memory than there are bytes.
+template <class List>
+void transferList(StateArchive& archive, List& list) {
+  const std::size_t count = archive.count(list.size());
+  if (!archive.isReading()) {
+    for (auto& value : list) archive(value);
+    return;
+  }
+  list.clear();
+  for (std::size_t i = 0; i < count; ++i) archive(list.emplace_back());
+}
+
+template <class Value>
+void transfer(StateArchive& archive, std::vector<Value>& list) {
+  transferList(archive, list);
+}
+
+template <class Value>
+void transfer(StateArchive& archive, std::deque<Value>& list) {
+  transferList(archive, list);
+}
+
+void transfer(StateArchive& archive, std::vector<bool>& list);
+
+template <class Key>
+void transfer(StateArchive& archive, std::set<Key>& set) {
+  std::vector<Key> keys(set.begin(), set.end());
+  archive(keys);
+  if (archive.isReading()) set = std::set<Key>(keys.begin(), keys.end());
+}
+
+template <class Key, class Value>
+void transfer(StateArchive& archive, std::map<Key, Value>& map) {
+  const std::size_t count = archive.count(map.size());
+  if (!archive.isReading()) {
+    for (auto& [key, value] : map) {
+      Key copy = key;
+      archive(copy, value);
+    }
+    return;
+  }
+  map.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    Key key{};
+    archive(key);
+    archive(map.emplace_hint(map.end(), std::piecewise_construct, std::forward_as_tuple(key), std::tuple<>())->second);
+  }
+}
+
+template <class Matrix>
+StateArchive::Form StateArchive::formOf(const Matrix& matrix) {
+  bool lower = false;
+  bool upper = false;
+  bool diagonal = false;
+  bool symmetric = true;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    diagonal = diagonal || matrix(row, row) != 0.0;
+    for (Eigen::Index col = row + 1; col < matrix.cols(); ++col) {
+      upper = upper || matrix(row, col) != 0.0;
+      lower = lower || matrix(col, row) != 0.0;
+      symmetric = symmetric && matrix(row, col) == matrix(col, row);
+    }
+  }
+  if (!lower && !upper) return diagonal ? Form::kDiagonal : Form::kZero;
+  if (symmetric) return Form::kSymmetric;
+  return lower ? Form::kFull : Form::kUpper;
+}
+
+template <class Matrix>
+void StateArchive::resize(Matrix& values) {
+  Eigen::Index rows = values.rows();
+  Eigen::Index cols = values.cols();
+  (*this)(rows, cols);
+  if (!is_reading_) return;
+  const auto fits = [](Eigen::Index size, Eigen::Index most) {
+    return size >= 0 && size <= (most == Eigen::Dynamic ? kMaxSide : most);
+  };
+  if (!fits(rows, Matrix::MaxRowsAtCompileTime) || !fits(cols, Matrix::MaxColsAtCompileTime)) {
+    fail("a matrix has an impossible size");
+  }
+  values.setZero(rows, cols);
+}
+
+template <class Matrix>
+void StateArchive::matrix(Matrix& values) {
+  if (Matrix::RowsAtCompileTime == Eigen::Dynamic || Matrix::ColsAtCompileTime == Eigen::Dynamic) resize(values);
+  Form form = Form::kFull;
+  if (values.rows() == values.cols() && values.rows() > 1) {
+    if (!is_reading_) form = formOf(values);
+    (*this)(form);
+    if (form > Form::kUpper) fail("a matrix has no known form");
+    if (is_reading_) values.setZero();
+  }
+  for (Eigen::Index col = 0; col < values.cols(); ++col) {
+    for (Eigen::Index row = 0; row < values.rows(); ++row) {
+      const bool is_below = row > col;
+      if (form == Form::kZero || (form == Form::kDiagonal && row != col)) continue;
+      if (is_below && (form == Form::kUpper || form == Form::kSymmetric)) continue;
+      (*this)(values(row, col));
+      if (form == Form::kSymmetric && is_reading_) values(col, row) = values(row, col);
+    }
+  }
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace semantic_mht_slam {
+
+/// A part of what the estimator knows, as bytes of a `StateArchive`.
+struct StateSection {
+  std::string name;
+  int version = 0;  ///< of the bytes' meaning; a reader refuses newer ones
+  std::string bytes;
+};
+
+/// Everything that an estimator with the same class table needs to go on as if it had never stopped: the input that
+/// still waits, the odometry so far, the open submap with its hypotheses, the finished submaps, keyframes, closures and
+/// the pose graph.
+struct SlamState {
+  std::vector<StateSection> sections;
+};
+
+}  // namespace semantic_mht_slam

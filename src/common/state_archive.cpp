@@ -1,0 +1,99 @@
+#include "semantic_mht_slam/common/state_archive.h"
+
+#include <cstring>
+
+#include "semantic_mht_slam/common/error.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kMaxVarintBytes = 10;
+
+}  // namespace
+
+void StateArchive::fail(const std::string& what) {
+  throw InputError("broken state: " + what);
+}
+
+void StateArchive::requireEnd() const {
+  if (!input_.empty()) fail(std::to_string(input_.size()) + " bytes too many");
+}
+
+std::uint8_t StateArchive::byte(std::uint8_t value) {
+  if (!is_reading_) {
+    output_.push_back(static_cast<char>(value));
+    return value;
+  }
+  if (input_.empty()) fail("it ends too early");
+  const auto result = static_cast<std::uint8_t>(input_.front());
+  input_.remove_prefix(1);
+  return result;
+}
+
+void StateArchive::number(double& value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  std::uint64_t result = 0;
+  for (int i = 0; i < 8; ++i) {
+    result |= static_cast<std::uint64_t>(byte(static_cast<std::uint8_t>(bits >> (8 * i)))) << (8 * i);
+  }
+  if (is_reading_) std::memcpy(&value, &result, sizeof value);
+}
+
+std::uint64_t StateArchive::varint(std::uint64_t value) {
+  std::uint64_t result = 0;
+  for (int i = 0; i < kMaxVarintBytes; ++i) {
+    const bool is_last = value < 128;
+    const std::uint8_t part = byte(static_cast<std::uint8_t>((value & 127) | (is_last ? 0 : 128)));
+    result |= static_cast<std::uint64_t>(part & 127) << (7 * i);
+    if ((part & 128) == 0) return result;
+    value >>= 7;
+  }
+  fail("a number has too many bytes");
+}
+
+std::size_t StateArchive::count(std::size_t elements) {
+  const std::uint64_t result = varint(elements);
+  if (is_reading_ && result > input_.size()) fail("a list is longer than its state");
+  return static_cast<std::size_t>(result);
+}
+
+void StateArchive::transferText(std::string& text) {
+  const std::size_t length = count(text.size());
+  if (!is_reading_) {
+    output_ += text;
+    return;
+  }
+  text = std::string(input_.substr(0, length));
+  input_.remove_prefix(length);
+}
+
+void transfer(StateArchive& archive, std::string& text) {
+  archive.transferText(text);
+}
+
+void transfer(StateArchive& archive, Pose& pose) {
+  archive(pose.rotation.coeffs(), pose.translation_m);
+}
+
+void transfer(StateArchive& archive, StampedPose& pose) {
+  auto& [stamp, T_world_base] = pose;
+  archive(stamp, T_world_base);
+}
+
+void transfer(StateArchive& archive, Gaussian3& gaussian) {
+  auto& [mean_m, cov_m2] = gaussian;
+  archive(mean_m, cov_m2);
+}
+
+void transfer(StateArchive& archive, std::vector<bool>& list) {
+  const std::size_t count = archive.count(list.size());
+  if (archive.isReading()) list.assign(count, false);
+  for (std::size_t i = 0; i < count; ++i) {
+    bool value = list[i];
+    archive(value);
+    list[i] = value;
+  }
+}
+
+}  // namespace semantic_mht_slam

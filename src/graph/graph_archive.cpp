@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <map>
+
+#include <Eigen/LU>
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+#include "graph_state.h"
+#include "hierarchy.h"
+#include "loop_review.h"
+#include "skeleton.h"
+
+// The state of a graph as bytes. Costs are written as what they are made of; the order of everything that a solver adds
+// up is kept.
+namespace semantic_mht_slam {
+namespace {
+
+/// A cost as its measurement and the square root of its information.
+template <class Cost, class Measured, class Matrix>
+void transferCost(StateArchive& archive, Measured measured, Matrix root, std::unique_ptr<Cost>& cost) {
+  if (cost) {
+    measured = cost->measured();
+    root = cost->squareRoot();
+  }
+  archive(measured, root);
+  if (archive.isReading()) cost = std::make_unique<Cost>(measured, SquareRoot<Matrix>{root});
+}
+
+void transferCost(StateArchive& archive, std::unique_ptr<RelativePose3Cost>& cost) {
+  transferCost(archive, Pose(), Matrix6d(), cost);
+}
+
+void transferCost(StateArchive& archive, std::unique_ptr<PointCost<3>>& cost) {
+  transferCost(archive, Eigen::Vector3d(), Eigen::Matrix3d(), cost);
+}
+
+void requireIndex(int index, std::size_t size) {
+  if (index < 0 || index >= static_cast<int>(size)) StateArchive::fail("a number names no part of the graph");
+}
+
+}  // namespace
+
+void transfer(StateArchive& archive, SightingFactor& sighting) {
+  archive(sighting.submap);
+  transferCost(archive, sighting.cost);
+}
+
+void transfer(StateArchive& archive, LandmarkState& landmark) {
+  archive(landmark.anchor, landmark.position_m, landmark.sightings);
+}
+
+void transfer(StateArchive& archive, PriorFactor& prior) {
+  archive(prior.T_world_submap, prior.cov);
+  transferCost(archive, prior.cost);
+}
+
+/// Without the cost of odometry, which `PoseGraph` makes again.
+void transfer(StateArchive& archive, SubmapState& submap) {
+  archive(submap.block, submap.landmarks, submap.loops, submap.priors);
+}
+
+void transfer(StateArchive& archive, LoopState3& loop) {
+  auto& [from, to, T_from_to, cov] = loop.constraint;
+  archive(from, to, T_from_to, cov, loop.state, loop.is_reviewed, loop.is_readmitted);
+  if (archive.isReading()) loop.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
+}
+
+void GraphState::transfer(StateArchive& archive) {
+  archive(submaps, landmarks, merged_landmarks, loops);
+  for (const auto& [number, landmark] : landmarks) {
+    requireIndex(landmark.anchor, submaps.size());
+    for (const SightingFactor& sighting : landmark.sightings) requireIndex(sighting.submap, submaps.size());
+  }
+  for (const SubmapState& submap : submaps) {
+    for (const std::int64_t number : submap.landmarks) requireIndex(0, landmarks.count(number));
+    for (const int loop : submap.loops) requireIndex(loop, loops.size());
+  }
+  for (const LoopState3& loop : loops) {
+    requireIndex(loop.constraint.from, submaps.size());
+    requireIndex(loop.constraint.to, submaps.size());
+  }
+}
+
+void LoopReview::transfer(StateArchive& archive, const GraphState& graph) {
+  archive(fits_odometry_, agrees_, reviewed_);
+  if (fits_odometry_.size() != graph.loops.size() || agrees_.size() != graph.loops.size()) {
+    StateArchive::fail("a loop closure was not looked at");
+  }
+  if (!archive.isReading()) return;
+  for (const LoopState3& loop : graph.loops) {
+    const auto& [from, to, T_from_to, cov] = loop.constraint;
+    loops_.push_back(makeTestedLoop<3>(from, to, T_from_to, cov));
+  }
+}
+
+void Hierarchy::LoopLink::transfer(StateArchive& archive) {
+  archive(link, is_settled);
+}
+
+void Hierarchy::transfer(StateArchive& archive) {
+  archive(skeleton_, loop_links_, landmark_links_, touched_, prior_links_, bend_, news_, is_pending_);
+}
+
+void Skeleton::Link::transfer(StateArchive& archive) {
+  archive(from, to, is_robust);
+  transferCost(archive, cost);
+}
+
+std::vector<int> Skeleton::activeLinks() const {
+  std::map<ceres::ResidualBlockId, int> link_of;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].id != nullptr) link_of[links_[i].id] = static_cast<int>(i);
+  }
+  std::vector<ceres::ResidualBlockId> blocks;
+  problem_.GetResidualBlocks(&blocks);
+  std::vector<int> links;
+  for (const ceres::ResidualBlockId block : blocks) links.push_back(link_of.at(block));
+  return links;
+}
+
+void Skeleton::transfer(StateArchive& archive) {
+  std::vector<int> active = activeLinks();
+  std::vector<std::array<double, kPoseBlock>> nodes(blocks_.begin(), blocks_.end());
+  archive(nodes, links_, active);
+  if (!archive.isReading()) return;
+  for (const auto& block : nodes) {
+    Pose pose;
+    readBlock(block.data(), pose);
+    addNode(pose);
+  }
+  for (const Link& link : links_) {
+    if (link.from != kWorld) requireIndex(link.from, nodes.size());
+    requireIndex(link.to, nodes.size());
+  }
+  for (const int link : active) {
+    requireIndex(link, links_.size());
+    setActive(link, true);
+  }
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,117 @@
+#include "semantic_mht_slam/mapping/hypothesis_state.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+namespace semantic_mht_slam {
+namespace {
+
+/// Values that several holders share, each with a number.
+template <class Value>
+class SharedValues {
+ public:
+  using Pointer = std::shared_ptr<const Value>;
+
+  bool isNew(const Pointer& pointer) const { return pointer != nullptr && number_of_.count(pointer.get()) == 0; }
+
+  void add(Pointer pointer) {
+    number_of_.emplace(pointer.get(), values_.size());
+    values_.push_back(std::move(pointer));
+  }
+
+  const std::vector<Pointer>& values() const { return values_; }
+
+  /// A pointer as the number of its value; 0 is null.
+  void transferPointer(StateArchive& archive, Pointer& pointer) const {
+    std::size_t number = pointer ? number_of_.at(pointer.get()) + 1 : 0;
+    archive(number);
+    if (number > values_.size()) StateArchive::fail("a number names nothing");
+    if (archive.isReading()) pointer = number == 0 ? nullptr : values_[number - 1];
+  }
+
+ private:
+  std::vector<Pointer> values_;
+  std::map<const Value*, std::size_t> number_of_;
+};
+
+using Landmarks = SharedValues<TrackedLandmark>;
+using Histories = SharedValues<AssociationRecord>;
+
+void transferValues(StateArchive& archive, Landmarks& landmarks) {
+  const std::size_t count = archive.count(landmarks.values().size());
+  for (std::size_t i = 0; i < count; ++i) {
+    TrackedLandmark landmark;
+    if (!archive.isReading()) landmark = *landmarks.values()[i];
+    archive(landmark);
+    if (archive.isReading()) landmarks.add(std::make_shared<const TrackedLandmark>(std::move(landmark)));
+  }
+}
+
+/// Adds the records of a history, the oldest first.
+void addHistory(const Histories::Pointer& newest, Histories& histories) {
+  std::vector<Histories::Pointer> records;
+  for (Histories::Pointer record = newest; histories.isNew(record); record = record->previous) {
+    records.push_back(record);
+  }
+  std::for_each(records.rbegin(), records.rend(), [&](const auto& record) { histories.add(record); });
+}
+
+void transferValues(StateArchive& archive, Histories& histories) {
+  const std::size_t count = archive.count(histories.values().size());
+  for (std::size_t i = 0; i < count; ++i) {
+    AssociationRecord record;
+    if (!archive.isReading()) record = *histories.values()[i];
+    auto& [previous, frame, landmark_of_measurement] = record;
+    histories.transferPointer(archive, previous);
+    archive(frame, landmark_of_measurement);
+    if (archive.isReading()) histories.add(std::make_shared<const AssociationRecord>(std::move(record)));
+  }
+}
+
+void transferLeaf(StateArchive& archive, const Landmarks& shared_landmarks, const Histories& histories,
+                  MapHypothesis& leaf) {
+  auto& [id, parent_id, born_frame, log_weight, landmarks, history, false_positives, offset, map_offset, expected_found,
+         expected_missed] = leaf;
+  archive(id, parent_id, born_frame, log_weight, false_positives, offset, map_offset, expected_found, expected_missed);
+  histories.transferPointer(archive, history);
+  landmarks.resize(archive.count(landmarks.size()));
+  for (TrackedLandmarkPtr& landmark : landmarks) {
+    shared_landmarks.transferPointer(archive, landmark);
+    if (!landmark) StateArchive::fail("a hypothesis lacks a landmark");
+  }
+}
+
+}  // namespace
+
+void transfer(StateArchive& archive, PoseOffset& offset) {
+  auto& [mean, cov] = offset;
+  archive(mean, cov);
+}
+
+void transfer(StateArchive& archive, TrackedLandmark& landmark) {
+  auto& [id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap, first_submap,
+         last_submap, updated_at_m, earlier, miss_likelihood, is_expected] = landmark;
+  archive(id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap);
+  archive(first_submap, last_submap, updated_at_m, earlier, miss_likelihood, is_expected);
+}
+
+void transferLeaves(StateArchive& archive, std::vector<MapHypothesis>& leaves) {
+  Landmarks landmarks;
+  Histories histories;
+  if (!archive.isReading()) {
+    for (const MapHypothesis& leaf : leaves) {
+      for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+        if (landmarks.isNew(landmark)) landmarks.add(landmark);
+      }
+      addHistory(leaf.history, histories);
+    }
+  }
+  transferValues(archive, landmarks);
+  transferValues(archive, histories);
+  leaves.resize(archive.count(leaves.size()));
+  if (leaves.empty()) StateArchive::fail("a tree without leaves");
+  for (MapHypothesis& leaf : leaves) transferLeaf(archive, landmarks, histories, leaf);
+}
+
+}  // namespace semantic_mht_slam

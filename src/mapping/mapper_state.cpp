@@ -1,0 +1,88 @@
+#include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/map/map_state.h"
+#include "semantic_mht_slam/mapping/hypothesis_state.h"
+#include "semantic_mht_slam/mapping/mapper.h"
+#include "semantic_mht_slam/models/detection_state.h"
+
+// What of the mapper outlives a program: the open submap with its hypotheses, and all that was learned on the way.
+namespace semantic_mht_slam {
+namespace {
+
+/// A list that has one entry a class, or one a cell, of the present configuration.
+template <class List>
+void transferFixed(StateArchive& archive, List& list) {
+  const std::size_t size = list.size();
+  archive(list);
+  if (list.size() != size) StateArchive::fail("it belongs to another class table");
+}
+
+}  // namespace
+
+void RunningMedian::transfer(StateArchive& archive) {
+  archive(bins_, count_);
+}
+
+void DetectorCalibration::PastFrame::transfer(StateArchive& archive) {
+  archive(T_odom_base, positions_m, classes);
+  if (classes.size() != positions_m.size()) StateArchive::fail("a frame with more positions than classes");
+}
+
+void DetectorCalibration::ClassStatistics::transfer(StateArchive& archive) {
+  archive(noise, wander, wander_distance_m);
+}
+
+void DetectorCalibration::transfer(StateArchive& archive) {
+  transferFixed(archive, statistics_);
+  archive(past_);
+  while (static_cast<int>(past_.size()) > config_.lag_frames) past_.pop_front();
+}
+
+void CentroidBias::transfer(StateArchive& archive) {
+  const Eigen::Index size = vector_.size();
+  archive(information_, vector_);
+  if (vector_.size() != size || information_.rows() != size || information_.cols() != size) {
+    StateArchive::fail("it belongs to another class table");
+  }
+  if (archive.isReading()) solve();
+}
+
+void DetectionRate::Cell::transfer(StateArchive& archive) {
+  archive(detected, frames);
+}
+
+void DetectionRate::transfer(StateArchive& archive) {
+  transferFixed(archive, cells_);
+}
+
+void MapBranching::transfer(StateArchive& archive) {
+  auto& [landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = map_;
+  archive(landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad);
+  if (archive.isReading()) restart(std::move(map_));
+  archive(next_attempt_m_);
+}
+
+void MultiHypothesisTree::transfer(StateArchive& archive) {
+  archive(tracking_.detectionRate(), branching_);
+  transferLeaves(archive, leaves_);
+  archive(next_hypothesis_id_);
+}
+
+void Mapper::Keyframe::transfer(StateArchive& archive) {
+  archive(place, T_submap_base, detections);
+}
+
+void Mapper::transfer(StateArchive& archive) {
+  archive(calibration_, bias_, tree_);
+  archive(next_landmark_, index_, is_open_, begin_, end_, T_odom_submap_, T_odom_last_, length_m_);
+  archive(T_submap_base_, rows_, keyframes_, T_odom_carried_, carried_offset_);
+  std::vector<TrackedLandmark> carried;
+  for (const TrackedLandmarkPtr& landmark : carried_) carried.push_back(*landmark);
+  archive(carried);
+  if (!archive.isReading()) return;
+  carried_.clear();
+  for (TrackedLandmark& landmark : carried) {
+    carried_.push_back(std::make_shared<const TrackedLandmark>(std::move(landmark)));
+  }
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,10 @@
+#include "semantic_mht_slam/models/detection_state.h"
+
+namespace semantic_mht_slam {
+
+void transfer(StateArchive& archive, Detection& detection) {
+  auto& [class_index, position_m, score, cov_m2, size_m, row] = detection;
+  archive(class_index, position_m, score, cov_m2, size_m, row);
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,48 @@
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/place/place_recognizer.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+void transferMatch(StateArchive& archive, PlaceMatch& match) {
+  auto& [query, index, accepted, refusal, T_match_query, cov, inliers, static_inliers, histogram_divergence,
+         descriptor_score, topology_score, scene_score, loop_prob, verification_score, rival_score, log_evidence,
+         pairs] = match;
+  archive(query, index, accepted, refusal, T_match_query, cov, inliers, static_inliers, histogram_divergence);
+  archive(descriptor_score, topology_score, scene_score, loop_prob, verification_score, rival_score, log_evidence);
+  archive(pairs);
+}
+
+}  // namespace
+
+void LoopFilter::transfer(StateArchive& archive) {
+  archive(loop_prob_);
+}
+
+void PaperChain::transfer(StateArchive& archive) {
+  archive(filter_);
+}
+
+void PlaceRecognizer::transfer(StateArchive& archive, std::vector<PlacesOfSubmap> submaps) {
+  if (archive.isReading()) {
+    for (PlacesOfSubmap& submap : submaps) {
+      if (paper_) paper_->add(submap.histogram, submap.keyframes);
+      const std::size_t count = places_.size() + submap.keyframes.size();
+      add(std::move(submap.keyframes), count);
+    }
+  }
+  bool has_filter = paper_.has_value();
+  archive(has_filter);
+  if (has_filter != paper_.has_value()) throw InputError("made with another place.chain than the present one");
+  if (paper_) archive(*paper_);
+  recent_.resize(archive.count(recent_.size()));
+  for (PlaceMatch& match : recent_) {
+    transferMatch(archive, match);
+    if (match.query >= places_.size() || match.match >= places_.size()) {
+      StateArchive::fail("a match of places that are not there");
+    }
+  }
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,190 @@
+#include "semantic_mht_slam/ros/map_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <semantic_mht_slam/MapHeader.h>
+#include <semantic_mht_slam/MapSection.h>
+
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/ros/atomic_bag.h"
+#include "semantic_mht_slam/ros/conversions.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr const char* kHeaderTopic = "/map_header";
+constexpr const char* kSectionTopic = "/map_section";
+constexpr const char* kMapTopic = "/map";
+constexpr const char* kTrajectoryTopic = "/trajectory";
+
+/// FNV-1a.
+template <class Bytes>
+std::uint64_t digestOf(const Bytes& bytes) {
+  std::uint64_t value = 0xCBF29CE484222325ULL;
+  for (const auto byte : bytes) value = (value ^ static_cast<std::uint8_t>(byte)) * 0x100000001B3ULL;
+  return value;
+}
+
+/// Wherever the submap evaluator's tree was found, it is the same by its name.
+std::string parametersOf(SlamConfig config) {
+  std::string& tree = config.back_end.evaluator.tree;
+  tree = std::filesystem::path(tree).filename().string();
+  Fields fields;
+  describe(config, fields);
+  return toYaml(fields);
+}
+
+MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const SystemConfig& config) {
+  MapHeader header;
+  header.format_version = MapHeader::FORMAT;
+  header.header = message.header;
+  header.method = nameOf(config.slam.method);
+  header.config = parametersOf(config.slam);
+  header.config_digest = digestOf(header.config);
+  header.classes = message.classes;
+  header.submaps = static_cast<std::uint32_t>(map.submaps);
+  header.landmarks = static_cast<std::uint32_t>(map.landmarks.size());
+  for (const StateSection& section : map.state.sections) header.sections.push_back(section.name);
+  return header;
+}
+
+MapSection toMessage(const StateSection& section) {
+  MapSection message;
+  message.name = section.name;
+  message.version = static_cast<std::uint32_t>(section.version);
+  message.data.assign(section.bytes.begin(), section.bytes.end());
+  message.digest = digestOf(message.data);
+  return message;
+}
+
+std::string describeClass(int id, const std::string& name, bool is_static) {
+  return std::to_string(id) + " '" + name + "' " + (is_static ? "static" : "movable");
+}
+
+/// Reads one file; each problem is reported with its name.
+class MapReader {
+ public:
+  MapReader(const std::string& path, const SystemConfig& config, const ClassTable& classes,
+            const KeepReading& keep_reading)
+      : path_(path), config_(config), classes_(classes), keep_reading_(keep_reading) {}
+
+  LoadedMap read() {
+    try {
+      rosbag::Bag bag(path_, rosbag::bagmode::Read);
+      const MapHeader header = readHeader(bag);
+      check(header);
+      return readSections(bag, header);
+    } catch (const rosbag::BagUnindexedException&) {
+      fail("the file is truncated");
+    } catch (const rosbag::BagException& error) {
+      fail(std::string("truncated, or no map file at all: ") + error.what());
+    } catch (const ros::Exception& error) {
+      fail(std::string("broken message: ") + error.what());
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const { throw InputError(path_ + ": " + problem); }
+
+  void require(bool condition, const std::string& problem) const {
+    if (!condition) fail(problem);
+  }
+
+  template <class Message>
+  boost::shared_ptr<Message> instantiate(const rosbag::MessageInstance& instance) const {
+    require(keep_reading_(), "reading was given up");
+    const auto message = instance.instantiate<Message>();
+    require(message != nullptr, "topic " + instance.getTopic() + " holds " + instance.getDataType() +
+                                    " of another version of this program, or of another program");
+    return message;
+  }
+
+  MapHeader readHeader(const rosbag::Bag& bag) const {
+    rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kHeaderTopic}));
+    require(view.size() == 1, std::string("is no map file: a bag ") +
+                                  (view.size() == 0 ? "without the topic " : "with several messages on ") + kHeaderTopic);
+    return *instantiate<MapHeader>(*view.begin());
+  }
+
+  void check(const MapHeader& header) const {
+    require(header.format_version <= MapHeader::FORMAT,
+            "made by a newer program: format " + std::to_string(header.format_version) + ", this one reads up to " +
+                std::to_string(MapHeader::FORMAT));
+    require(digestOf(header.config) == header.config_digest, "damaged: the digest of its parameters is wrong");
+    require(header.method == nameOf(config_.slam.method), "made with the method '" + header.method +
+                                                              "', the present one is '" + nameOf(config_.slam.method) +
+                                                              "'");
+    require(static_cast<int>(header.classes.size()) == classes_.size(),
+            "made with " + std::to_string(header.classes.size()) + " classes, the present class table has " +
+                std::to_string(classes_.size()));
+    for (int i = 0; i < classes_.size(); ++i) {
+      const SemanticClass& theirs = header.classes[static_cast<std::size_t>(i)];
+      const std::string a = describeClass(theirs.id, theirs.name, theirs.is_static);
+      const std::string b = describeClass(classes_[i].id, classes_[i].name, classes_[i].is_static);
+      require(a == b, "made with another class table: class " + std::to_string(i) + " is " + a + ", now " + b);
+    }
+  }
+
+  LoadedMap readSections(const rosbag::Bag& bag, const MapHeader& header) const {
+    LoadedMap map;
+    map.submaps = header.submaps;
+    map.landmarks = header.landmarks;
+    map.has_same_parameters = header.config == parametersOf(config_.slam);
+    rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));
+    for (const rosbag::MessageInstance& instance : view) {
+      const auto section = instantiate<MapSection>(instance);
+      require(digestOf(section->data) == section->digest, "damaged: the digest of section '" + section->name +
+                                                              "' is wrong");
+      map.state.sections.push_back({section->name, static_cast<int>(section->version),
+                                    std::string(section->data.begin(), section->data.end())});
+    }
+    for (const std::string& name : header.sections) {
+      require(std::any_of(map.state.sections.begin(), map.state.sections.end(),
+                          [&](const StateSection& section) { return section.name == name; }),
+              "damaged: section '" + name + "' is missing");
+    }
+    return map;
+  }
+
+  const std::string& path_;
+  const SystemConfig& config_;
+  const ClassTable& classes_;
+  const KeepReading& keep_reading_;
+};
+
+}  // namespace
+
+SavedMap mapOf(const Slam& slam) {
+  return {slam.snapshot(), slam.landmarks(), slam.trajectory(), slam.map().submaps().size()};
+}
+
+std::size_t writeMapFile(const std::string& path, const SavedMap& map, const SystemConfig& config,
+                         const ClassTable& classes) {
+  const Stamp last = map.trajectory.empty() ? 0 : map.trajectory.back().stamp;
+  const Stamp stamp = std::max<Stamp>(1, last);  // ROS time cannot be 0
+  const SemanticMap message = toMessage(stamp, config.node.map_frame, classes, map.landmarks, map.submaps);
+  writeBagAtomically(path, [&](rosbag::Bag& bag) {
+    bag.setCompression(rosbag::compression::BZ2);
+    const ros::Time time = toRosTime(stamp);
+    bag.write(kHeaderTopic, time, makeHeader(map, message, config));
+    for (const StateSection& section : map.state.sections) bag.write(kSectionTopic, time, toMessage(section));
+    bag.write(kMapTopic, time, message);
+    bag.write(kTrajectoryTopic, time, toPath(map.trajectory, config.node.map_frame));
+  });
+  return static_cast<std::size_t>(std::filesystem::file_size(path));
+}
+
+LoadedMap readMapFile(const std::string& path, const SystemConfig& config, const ClassTable& classes,
+                      const KeepReading& keep_reading) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw InputError("cannot read '" + path + "': no such file, or no regular one");
+  }
+  return MapReader(path, config, classes, keep_reading).read();
+}
+
+}  // namespace semantic_mht_slam

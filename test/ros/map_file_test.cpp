@@ -1,0 +1,178 @@
+#include "semantic_mht_slam/ros/map_file.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <std_msgs/Time.h>
+#include <sys/stat.h>
+
+#include <semantic_mht_slam/MapHeader.h>
+#include <semantic_mht_slam/MapSection.h>
+#include <semantic_mht_slam/SemanticMap.h>
+
+#include "semantic_mht_slam/io/text_file.h"
+
+#include "support/expect_input_error.h"
+#include "support/square_drive.h"
+#include "support/temporary_folder.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+const KeepReading kAlways = [] { return true; };
+
+/// A map file of a short drive.
+class MapFileTest : public testing::Test {
+ protected:
+  MapFileTest() : classes_(makeStreetClasses()), slam_(config_.slam, classes_) {
+    SquareDrive(1).feed(slam_, 0, 150);
+    map_ = mapOf(slam_);
+    writeMapFile(path_, map_, config_, classes_);
+  }
+
+  LoadedMap read(const std::string& path) const { return readMapFile(path, config_, classes_, kAlways); }
+
+  /// Writes the file again with its header changed.
+  std::string withHeader(const std::function<void(MapHeader&)>& change) const {
+    const std::string path = folder_ / "changed.bag";
+    rosbag::Bag bag(path_, rosbag::bagmode::Read);
+    rosbag::Bag changed(path, rosbag::bagmode::Write);
+    rosbag::View view(bag);
+    for (const rosbag::MessageInstance& instance : view) {
+      if (const auto header = instance.instantiate<MapHeader>()) {
+        change(*header);
+        changed.write(instance.getTopic(), instance.getTime(), *header);
+      } else {
+        changed.write(instance.getTopic(), instance.getTime(), instance);
+      }
+    }
+    return path;
+  }
+
+  TemporaryFolder folder_;
+  std::string path_ = folder_ / "map.bag";
+  SystemConfig config_;
+  ClassTable classes_;
+  Slam slam_;
+  SavedMap map_;
+};
+
+TEST_F(MapFileTest, WhatWasWrittenIsReadToTheLastBit) {
+  const LoadedMap loaded = read(path_);
+  ASSERT_EQ(loaded.state.sections.size(), map_.state.sections.size());
+  for (std::size_t i = 0; i < loaded.state.sections.size(); ++i) {
+    EXPECT_EQ(loaded.state.sections[i].name, map_.state.sections[i].name);
+    EXPECT_TRUE(loaded.state.sections[i].bytes == map_.state.sections[i].bytes) << loaded.state.sections[i].name;
+  }
+  EXPECT_EQ(loaded.submaps, slam_.map().submaps().size());
+  EXPECT_EQ(loaded.landmarks, slam_.landmarks().size());
+  EXPECT_TRUE(loaded.has_same_parameters);
+}
+
+TEST_F(MapFileTest, LandmarksAndTrajectoryCanBeReadWithoutTheState) {
+  rosbag::Bag bag(path_, rosbag::bagmode::Read);
+  rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{"/map"}));
+  ASSERT_EQ(view.size(), 1U);
+  const auto map = view.begin()->instantiate<SemanticMap>();
+  ASSERT_NE(map, nullptr);
+  EXPECT_EQ(map->landmarks.size(), slam_.landmarks().size());
+}
+
+TEST_F(MapFileTest, OtherParametersAreAllowedAndTold) {
+  SystemConfig other = config_;
+  other.slam.mapper.tree.max_hypotheses = 7;
+  const LoadedMap loaded = readMapFile(path_, other, classes_, kAlways);
+  EXPECT_FALSE(loaded.has_same_parameters);
+  EXPECT_NO_THROW(Slam(other.slam, classes_, loaded.state));
+}
+
+TEST_F(MapFileTest, TruncatedFilesAreRefusedWhereverTheyEnd) {
+  const std::string content = readFile(path_);
+  const std::string cut = folder_ / "cut.bag";
+  for (int i = 0; i < 60; ++i) {
+    const std::size_t length = i < 20 ? static_cast<std::size_t>(i) : content.size() * (i - 19) / 41;
+    writeFileAtomically(cut, content.substr(0, length));
+    expectInputError([&] { read(cut); }, {cut, "truncated"});
+  }
+  writeFileAtomically(cut, content.substr(0, content.size() - 1));
+  expectInputError([&] { read(cut); }, {cut});
+}
+
+TEST_F(MapFileTest, ForeignFilesAreRefused) {
+  expectInputError([&] { read(folder_ / "nothing.bag"); }, {"no such file"});
+  expectInputError([&] { read(folder_.path()); }, {"no such file, or no regular one"});
+  const std::string text = folder_ / "text.bag";
+  writeFileAtomically(text, "a text that is no bag at all\n");
+  expectInputError([&] { read(text); }, {text, "no map file"});
+  const std::string pipe = folder_ / "pipe.bag";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expectInputError([&] { read(pipe); }, {"no regular one"});
+  const std::string other = folder_ / "other.bag";
+  {
+    rosbag::Bag bag(other, rosbag::bagmode::Write);
+    bag.write("/time_origin", ros::Time(1.0), std_msgs::Time());
+  }
+  expectInputError([&] { read(other); }, {other, "is no map file", "/map_header"});
+  {
+    rosbag::Bag bag(other, rosbag::bagmode::Write);
+    bag.write("/map_header", ros::Time(1.0), std_msgs::Time());
+  }
+  expectInputError([&] { read(other); }, {"/map_header holds std_msgs/Time"});
+}
+
+TEST_F(MapFileTest, NewerFilesAreRefused) {
+  const std::string newer = withHeader([](MapHeader& header) { ++header.format_version; });
+  expectInputError([&] { read(newer); }, {newer, "made by a newer program: format 2, this one reads up to 1"});
+}
+
+TEST_F(MapFileTest, MissingSectionsAreNamed) {
+  const std::string more = withHeader([](MapHeader& header) { header.sections.push_back("weather"); });
+  expectInputError([&] { read(more); }, {"section 'weather' is missing"});
+}
+
+TEST_F(MapFileTest, AnotherClassTableOrMethodIsRefused) {
+  expectInputError([&] { readMapFile(path_, config_, makeStreetClasses("fence"), kAlways); },
+                   {"another class table", "'trunk'", "'fence'"});
+  SystemConfig other = config_;
+  other.slam.method = Method::kUkf;
+  expectInputError([&] { readMapFile(path_, other, classes_, kAlways); }, {"'dpmhm'", "'ukf'"});
+}
+
+TEST_F(MapFileTest, ReadingStopsWhenItIsNotWantedAnyMore) {
+  expectInputError([&] { readMapFile(path_, config_, classes_, [] { return false; }); }, {"given up"});
+}
+
+TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
+  const std::string content = readFile(path_);
+  const std::string damaged = folder_ / "damaged.bag";
+  Rng rng(2);
+  int refused = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    std::string bytes = content;
+    bytes[rng.index(bytes.size())] ^= static_cast<char>(1U << rng.index(8));
+    std::ofstream(damaged, std::ios::binary) << bytes;
+    try {
+      const LoadedMap loaded = read(damaged);
+      for (std::size_t i = 0; i < loaded.state.sections.size(); ++i) {
+        EXPECT_TRUE(loaded.state.sections[i].bytes == map_.state.sections[i].bytes) << trial;
+      }
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST_F(MapFileTest, FailedWritesLeaveTheOldFileAlone) {
+  const std::string content = readFile(path_);
+  expectInputError([&] { writeMapFile(folder_.path(), map_, config_, classes_); }, {"cannot write"});
+  expectInputError([&] { writeMapFile(folder_ / "no/such/folder/map.bag", map_, config_, classes_); }, {"cannot write"});
+  EXPECT_TRUE(readFile(path_) == content);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1) << "no temporary file is left";
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam

@@ -1,0 +1,225 @@
+#include <filesystem>
+#include <future>
+
+#include <gtest/gtest.h>
+#include <nav_msgs/Path.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <semantic_mht_slam/LoadMap.h>
+#include <semantic_mht_slam/SaveMap.h>
+
+#include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/ros/map_file.h"
+
+#include "support/running_node.h"
+#include "support/square_drive.h"
+#include "support/temporary_folder.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+/// A node that drives a simulated square.
+class DrivingNode {
+ public:
+  explicit DrivingNode(const std::string& name) : node(name), drive_(1) {
+    odometry_ = node.handle().advertise<nav_msgs::Odometry>("odometry", 10000);
+    objects_ = node.handle().advertise<SemanticObjectArray>("objects", 10000);
+    trajectory_subscriber_ = node.handle().subscribe<nav_msgs::Path>(
+        "trajectory", 10, boost::function<void(const nav_msgs::PathConstPtr&)>([this](const nav_msgs::PathConstPtr& m) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          trajectory_ = *m;
+        }));
+  }
+
+  bool isReady() {
+    return node.isReady() &&
+           waitFor([this] { return odometry_.getNumSubscribers() > 0 && objects_.getNumSubscribers() > 0; });
+  }
+
+  /// Sends frames [begin, end) and waits until the node has used all frames up to `end`.
+  bool feed(int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const StampedPose odometry{SquareDrive::stampAt(i), SquareDrive::odometryAt(i)};
+      objects_.publish(toMessage(odometry.stamp, "base_link", drive_.detectionsAt(i), table_));
+      odometry_.publish(toOdometry(odometry, "odom", "base_link"));
+      ros::WallDuration(0.002).sleep();
+    }
+    return waitFor([&] { return node.value("objects", "frames used") == std::to_string(end); }, 60.0);
+  }
+
+  template <class Service>
+  typename Service::Response call(const std::string& name, typename Service::Request request = {}) {
+    typename Service::Response response;
+    ros::ServiceClient client = node.handle().serviceClient<Service>(name);
+    EXPECT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+    EXPECT_TRUE(client.call(request, response)) << name;
+    EXPECT_FALSE(response.message.empty());
+    return response;
+  }
+
+  SaveMap::Response save(const std::string& path) {
+    SaveMap::Request request;
+    request.path = path;
+    return call<SaveMap>("save_map", request);
+  }
+
+  LoadMap::Response load(const std::string& path) {
+    LoadMap::Request request;
+    request.path = path;
+    return call<LoadMap>("load_map", request);
+  }
+
+  /// The trajectory with `poses` poses that is published after everything was finished.
+  std::vector<geometry_msgs::PoseStamped> finalTrajectory(std::size_t poses) {
+    EXPECT_TRUE(call<std_srvs::Trigger>("finish_submap").success);
+    ros::WallDuration(1.5).sleep();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    EXPECT_EQ(trajectory_.poses.size(), poses);
+    return trajectory_.poses;
+  }
+
+  RunningNode node;
+
+ private:
+  static ClassTable makeTable() {
+    ClassTable street = makeStreetClasses();
+    std::vector<ClassInfo> classes = street.all();
+    classes[0].id = RunningNode::kPole;
+    classes[1].id = 71;  // trunk
+    return ClassTable(classes, "test");
+  }
+
+  SquareDrive drive_;
+  ClassTable table_ = makeTable();
+  ros::Publisher odometry_;
+  ros::Publisher objects_;
+  ros::Subscriber trajectory_subscriber_;
+  std::mutex mutex_;
+  nav_msgs::Path trajectory_;
+};
+
+/// A map of the node's default parameters and class table, with `ballast` megabytes that nobody needs.
+std::string writeMap(const std::string& path, int frames, int ballast) {
+  const SystemConfig config;
+  const ClassTable classes = loadClassTable(config, "");
+  Slam slam(config.slam, classes);
+  SquareDrive(2).feed(slam, 0, frames);
+  SavedMap map = mapOf(slam);
+  Rng rng(3);
+  for (int i = 0; i < ballast; ++i) {
+    StateSection section{"ballast", 1, std::string(1U << 20U, ' ')};
+    for (char& byte : section.bytes) byte = static_cast<char>(rng.bits());
+    map.state.sections.push_back(std::move(section));
+  }
+  writeMapFile(path, map, config, classes);
+  return path;
+}
+
+TEST(MapServicesTest, SaveLoadAndGoOnEqualsNeverHavingStopped) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "map.bag";
+  std::vector<geometry_msgs::PoseStamped> expected;
+  {
+    DrivingNode first("first");
+    ASSERT_TRUE(first.isReady());
+    ASSERT_TRUE(first.feed(0, 300));
+    const SaveMap::Response saved = first.save(path);
+    ASSERT_TRUE(saved.success) << saved.message;
+    EXPECT_EQ(saved.bytes, std::filesystem::file_size(path));
+    ASSERT_TRUE(first.feed(300, 600));
+    expected = first.finalTrajectory(600);
+  }
+  DrivingNode second("second");
+  ASSERT_TRUE(second.isReady());
+  const LoadMap::Response loaded = second.load(path);
+  ASSERT_TRUE(loaded.success) << loaded.message;
+  ASSERT_TRUE(second.feed(300, 600));
+  const std::vector<geometry_msgs::PoseStamped> trajectory = second.finalTrajectory(600);
+  ASSERT_EQ(trajectory.size(), expected.size());
+  for (std::size_t i = 0; i < trajectory.size(); ++i) ASSERT_EQ(trajectory[i], expected[i]) << i;
+}
+
+TEST(MapServicesTest, FilesThatCannotBeUsedLeaveTheRunningMap) {
+  const TemporaryFolder folder;
+  const std::string good = writeMap(folder / "good.bag", 100, 0);
+  const std::string text = folder / "text.bag";
+  writeFileAtomically(text, "no bag");
+  const std::string cut = folder / "cut.bag";
+  const std::string content = readFile(good);
+  writeFileAtomically(cut, content.substr(0, content.size() / 2));
+  DrivingNode driving("refusing");
+  ASSERT_TRUE(driving.isReady());
+  ASSERT_TRUE(driving.feed(0, 100));
+  const std::string submaps = driving.node.value("estimator", "submaps");
+  for (const std::string& path : {text, cut, folder / "missing.bag", folder.path()}) {
+    const LoadMap::Response response = driving.load(path);
+    EXPECT_FALSE(response.success);
+    EXPECT_NE(response.message.find(path), std::string::npos) << response.message;
+    EXPECT_NE(response.message.find("the running map stays"), std::string::npos) << response.message;
+  }
+  EXPECT_FALSE(driving.save("/no/such/folder/map.bag").success);
+  ASSERT_TRUE(driving.feed(100, 110)) << "frames are counted on: the map is still there";
+  EXPECT_EQ(driving.node.value("estimator", "submaps"), submaps);
+  EXPECT_TRUE(driving.load(good).success);
+}
+
+TEST(MapServicesTest, NodeThatIsKilledWhileSavingLeavesAWholeFile) {
+  const TemporaryFolder folder;
+  const SystemConfig config;
+  const ClassTable classes = loadClassTable(config, "");
+  const std::string old_map = writeMap(folder / "old.bag", 40, 0);
+  const std::string path = folder / "map.bag";
+  std::filesystem::copy_file(old_map, path);
+  const std::string big = writeMap(folder / "big.bag", 700, 0);
+  const std::string old_content = readFile(path);
+  int untouched = 0;
+  for (int trial = 0; trial < 4; ++trial) {
+    DrivingNode driving("killed_" + std::to_string(trial));
+    ASSERT_TRUE(driving.isReady());
+    ASSERT_TRUE(driving.load(big).success);
+    ros::ServiceClient client = driving.node.handle().serviceClient<SaveMap>("save_map");
+    ASSERT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+    auto saving = std::async(std::launch::async, [&] {
+      SaveMap save;
+      save.request.path = path;
+      client.call(save);
+    });
+    ros::WallDuration(0.03 * trial).sleep();
+    EXPECT_GE(driving.node.process().stop(SIGKILL, 5.0), 0.0);
+    saving.wait();
+    if (readFile(path) == old_content) ++untouched;
+    EXPECT_NO_THROW(readMapFile(path, config, classes, [] { return true; })) << trial;
+  }
+  EXPECT_GT(untouched, 0) << "none was killed before it had finished";
+}
+
+TEST(MapServicesTest, InterruptEndsTheNodeWithinTwoSecondsWhileItLoads) {
+  const TemporaryFolder folder;
+  const std::string path = writeMap(folder / "heavy.bag", 100, 150);
+  DrivingNode driving("loading");
+  ASSERT_TRUE(driving.isReady());
+  ros::ServiceClient client = driving.node.handle().serviceClient<LoadMap>("load_map");
+  ASSERT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+  auto loading = std::async(std::launch::async, [&] {
+    LoadMap load;
+    load.request.path = path;
+    return client.call(load) && load.response.success;
+  });
+  ros::WallDuration(0.5).sleep();
+  const double seconds = driving.node.process().stop(SIGINT, 20.0);
+  EXPECT_GE(seconds, 0.0);
+  EXPECT_LT(seconds, 2.0);
+  EXPECT_FALSE(loading.get()) << "the file was loaded before the interrupt";
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "map_services_test");
+  ros::AsyncSpinner spinner(2);
+  spinner.start();
+  return RUN_ALL_TESTS();
+}
