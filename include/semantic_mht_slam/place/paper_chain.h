@@ -20,7 +20,7 @@ class StateArchive;
 
 /// Parameters of the paper's place recognition.
 struct PaperChainConfig {
-  int similar_submaps = 12;
+  int similar_submaps = 20;
   double max_divergence = 0.1;  ///< of submaps, nats
   int scenes_per_submap = 5;
   double max_scene_distance = 0.35;  ///< of scene histograms
@@ -61,7 +61,8 @@ class PaperChain {
 
   /// Candidates for a keyframe whose submap has this histogram, best first, equally good ones by frame. Those driven
   /// less than `recent_m` before it are no candidates; its own submap may have been added, so that the covisibility
-  /// graph knows its landmarks. Keyframes must be asked in the order of the drive, as the filter moves on with each.
+  /// graph knows its landmarks. Keyframes must be asked in the order of the drive, as the filter moves on with each,
+  /// and with the scene with which they were added.
   std::vector<PaperCandidate> query(const Keyframe& keyframe, const ClassHistogram& submap_histogram);
 
   /// Forgets the belief of the filter, as after a gap in the drive or for a submap that was not checked.
