@@ -3,8 +3,8 @@
 namespace semantic_mht_slam {
 
 void transfer(StateArchive& archive, Detection& detection) {
-  auto& [class_index, position_m, score, cov_m2, size_m, row] = detection;
-  archive(class_index, position_m, score, cov_m2, size_m, row);
+  auto& [class_index, position_m, score, cov_m2, size_m, points, is_moving, row] = detection;
+  archive(class_index, position_m, score, cov_m2, size_m, points, is_moving, row);
 }
 
 }  // namespace semantic_mht_slam
