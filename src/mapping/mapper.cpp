@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "semantic_mht_slam/common/log_math.h"
@@ -90,6 +91,12 @@ std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_
   keepKeyframe(input.T_submap_base, detections);
   tree_.step(input, rng);
   return finished;
+}
+
+void Mapper::forgetSurroundings() {
+  if (is_open_) throw std::logic_error("Mapper: surroundings are forgotten between submaps");
+  carried_.clear();
+  calibration_.forgetFrames();
 }
 
 void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {

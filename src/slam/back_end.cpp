@@ -6,6 +6,9 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kSessionStddev_m = 1.0;  // of a pose by localization
+constexpr double kSessionStddev_rad = 0.03;
+
 /// Covariance of a step on the right of T_a_b from that of the position and heading of b in the axes of a.
 PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_a_b, double tilt_stddev_rad) {
   const Eigen::Matrix3d R_b_a = T_a_b.rotation.toRotationMatrix().transpose();
@@ -96,6 +99,13 @@ void BackEnd::addNode(const MapKeyframe& keyframe) {
     node.odometry_cov.diagonal().head<3>().setConstant(distance_m * noise.odometry_stddev_m * noise.odometry_stddev_m);
     node.odometry_cov.diagonal().tail<3>().setConstant(distance_m * noise.odometry_stddev_rad *
                                                        noise.odometry_stddev_rad);
+  }
+  if (T_map_odom_start_ && index > 0) {
+    node.T_previous_submap = map_.T_map_keyframe.back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
+    node.odometry_cov.setZero();
+    node.odometry_cov.diagonal().head<3>().setConstant(kSessionStddev_m * kSessionStddev_m);
+    node.odometry_cov.diagonal().tail<3>().setConstant(kSessionStddev_rad * kSessionStddev_rad);
+    T_map_odom_start_.reset();
   }
   std::set<LandmarkId> taken;
   for (const KeyframeSighting& sighting : keyframe.sightings) {
@@ -251,7 +261,13 @@ LandmarkId BackEnd::resolve(LandmarkId id) const {
   return id;
 }
 
+void BackEnd::goOnAt(const Pose& T_map_odom, double driven_m) {
+  T_map_odom_start_ = T_map_odom;
+  closed_at_m_ = driven_m;
+}
+
 Pose BackEnd::T_map_odom() const {
+  if (T_map_odom_start_) return *T_map_odom_start_;
   if (map_.keyframes.empty()) return Pose::identity();
   return map_.T_map_keyframe.back() * map_.keyframes.back().T_odom_base.inverse();
 }

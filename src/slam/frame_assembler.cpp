@@ -42,6 +42,12 @@ bool FrameAssembler::addOdometry(const StampedPose& T_odom_base) {
   return true;
 }
 
+void FrameAssembler::beginSession() {
+  odometry_.clear();
+  waiting_.clear();
+  last_frame_.reset();
+}
+
 void FrameAssembler::forgetOldOdometry() {
   // Frames that wait already need their odometry however old it is.
   Stamp oldest_needed = odometry_.back().stamp - stampFromSeconds(config_.odometry_history_s);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "pose_refinement.h"
 
@@ -31,13 +32,13 @@ struct Pass {
   std::vector<AlignmentPoint> points;
 };
 
-/// Runs of successive keyframes near a position, seen at least `min_driven_m` before.
-std::vector<std::vector<int>> earlierRuns(const KeyframeMap& map, int query, double radius_m, double min_driven_m) {
-  const auto q = static_cast<std::size_t>(query);
+/// Runs of successive keyframes among the first `end` that are near the expected pose.
+std::vector<std::vector<int>> runsNear(const KeyframeMap& map, std::size_t end, const AlignmentPrior& prior,
+                                       const RevisitConfig& config) {
+  const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
   std::vector<std::vector<int>> runs;
-  for (std::size_t k = 0; k < q; ++k) {
-    if (map.keyframes[q].driven_m - map.keyframes[k].driven_m < min_driven_m) break;
-    const Eigen::Vector3d offset = map.T_map_keyframe[k].translation_m - map.T_map_keyframe[q].translation_m;
+  for (std::size_t k = 0; k < end; ++k) {
+    const Eigen::Vector3d offset = map.T_map_keyframe[k].translation_m - prior.T_a_b.translation_m;
     if (offset.head<2>().norm() > radius_m) continue;
     const int keyframe = static_cast<int>(k);
     if (runs.empty() || runs.back().back() + 1 != keyframe) runs.emplace_back();
@@ -96,6 +97,43 @@ int nearestKeyframe(const KeyframeMap& map, const std::vector<int>& keyframes, c
   });
 }
 
+/// One record of laying a scene onto a pass; empty if nothing fits.
+std::optional<LoopClosureRecord> layOnto(const KeyframeMap& map, const std::vector<int>& run, const Scene& scene,
+                                         const AlignmentPrior& prior, const ClassTable& classes,
+                                         const RevisitConfig& config) {
+  std::vector<AlignmentPoint> seen;
+  for (const SceneObject& object : scene.objects) {
+    seen.push_back({object.position_m, object.cov_m2, object.class_index});
+  }
+  const Pass pass = makePass(map, run);
+  const auto modes = alignJointly(seen, pass.points, prior, classes, config.alignment);
+  if (modes.empty()) return std::nullopt;
+  const AlignmentHypothesis& best = modes.front();
+  LoopClosureRecord record;
+  record.query_keyframe = -1;
+  const RefinedPose pose = refined(best, seen, pass, config);
+  record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
+  record.T_match_query = map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
+  record.cov = pose.cov;
+  record.score = best.log_likelihood;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const int j = best.landmark_for_detection[i];
+    if (j < 0) continue;
+    const Eigen::Vector3d apart_m =
+        pose.T_a_b * seen[i].position_m - pass.points[static_cast<std::size_t>(j)].position_m;
+    if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
+    ++record.inliers;
+    record.pairs.push_back({scene.objects[i].landmark, pass.ids[static_cast<std::size_t>(j)]});
+  }
+  if (best.log_likelihood < config.min_log_evidence) {
+    record.reason = "too little evidence";
+  } else if (modes.size() > 1 && best.log_likelihood - modes[1].log_likelihood < config.min_log_margin) {
+    record.reason = "ambiguous";
+  }
+  record.is_accepted = record.reason.empty();
+  return record;
+}
+
 }  // namespace
 
 JointAlignmentConfig RevisitConfig::wideTilt() {
@@ -134,45 +172,29 @@ AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const Revisi
   return prior;
 }
 
+std::vector<LoopClosureRecord> findInMap(const KeyframeMap& map, const Scene& scene, const AlignmentPrior& prior,
+                                         const ClassTable& classes, const RevisitConfig& config) {
+  std::vector<LoopClosureRecord> records;
+  for (const std::vector<int>& run : runsNear(map, map.keyframes.size(), prior, config)) {
+    if (auto record = layOnto(map, run, scene, prior, classes, config)) records.push_back(std::move(*record));
+  }
+  return records;
+}
+
 std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
                                             const ClassTable& classes, const RevisitConfig& config) {
   const auto q = static_cast<std::size_t>(query);
   const AlignmentPrior prior = driftPrior(map.T_map_keyframe[q], drifted_m, config);
-  std::vector<AlignmentPoint> seen;
-  const Scene& scene = map.keyframes[q].scene;
-  for (const SceneObject& object : scene.objects) {
-    seen.push_back({object.position_m, object.cov_m2, object.class_index});
-  }
-  const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
+  const double latest_m = map.keyframes[q].driven_m - config.min_driven_m;
+  const auto end = std::upper_bound(map.keyframes.begin(), map.keyframes.begin() + query, latest_m,
+                                    [](double m, const MapKeyframe& keyframe) { return m < keyframe.driven_m; });
   std::vector<LoopClosureRecord> records;
-  for (const std::vector<int>& run : earlierRuns(map, query, radius_m, config.min_driven_m)) {
-    const Pass pass = makePass(map, run);
-    const auto modes = alignJointly(seen, pass.points, prior, classes, config.alignment);
-    if (modes.empty()) continue;
-    const AlignmentHypothesis& best = modes.front();
-    LoopClosureRecord record;
-    record.query_keyframe = query;
-    const RefinedPose pose = refined(best, seen, pass, config);
-    record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
-    record.T_match_query = map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
-    record.cov = pose.cov;
-    record.score = best.log_likelihood;
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const int j = best.landmark_for_detection[i];
-      if (j < 0) continue;
-      const Eigen::Vector3d apart_m =
-          pose.T_a_b * seen[i].position_m - pass.points[static_cast<std::size_t>(j)].position_m;
-      if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
-      ++record.inliers;
-      record.pairs.push_back({scene.objects[i].landmark, pass.ids[static_cast<std::size_t>(j)]});
-    }
-    if (best.log_likelihood < config.min_log_evidence) {
-      record.reason = "too little evidence";
-    } else if (modes.size() > 1 && best.log_likelihood - modes[1].log_likelihood < config.min_log_margin) {
-      record.reason = "ambiguous";
-    }
-    record.is_accepted = record.reason.empty();
-    records.push_back(std::move(record));
+  for (const std::vector<int>& run :
+       runsNear(map, static_cast<std::size_t>(end - map.keyframes.begin()), prior, config)) {
+    auto record = layOnto(map, run, map.keyframes[q].scene, prior, classes, config);
+    if (!record) continue;
+    record->query_keyframe = query;
+    records.push_back(std::move(*record));
   }
   return records;
 }

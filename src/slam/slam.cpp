@@ -38,6 +38,7 @@ void describe(SlamConfig& config, Fields& fields) {
   fields.group("input", config.input);
   describe(config.mapper, fields);
   describe(config.back_end, fields);
+  fields.group("localization", config.localization);
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)
@@ -46,7 +47,8 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
       rng_(config.seed),
       keyframe_config_(config.back_end.keyframe),
       keep_prob_(config.mapper.detection.keep_prob),
-      map_(config.mapper.detection.keep_prob) {
+      map_(config.mapper.detection.keep_prob),
+      localizer_config_(config.localization) {
   if (config.method == Method::kOdometry) return;
   mapper_.emplace(config.mapper, classes);
   back_end_.emplace(config.back_end, classes);
@@ -70,17 +72,24 @@ void Slam::addDetections(Stamp stamp, Detections detections) {
 
 void Slam::processReadyFrames() {
   while (auto frame = assembler_.next()) {
-    if (mapper_) {
-      if (latest_frame_) {
-        driven_m_ += (frame->T_odom_base.translation_m - latest_frame_->T_odom_base.translation_m).norm();
-      }
-      auto submap = mapper_->add(frame->index, frame->stamp, frame->T_odom_base, frame->detections, rng_);
-      if (submap) take(std::move(*submap));
-      if (submap_frames_.empty()) submap_driven_m_ = driven_m_;
-      submap_frames_.push_back(*frame);
+    if (mapper_ && latest_frame_) {
+      driven_m_ += (frame->T_odom_base.translation_m - latest_frame_->T_odom_base.translation_m).norm();
     }
+    if (localizer_) localizeBy(*frame);
+    if (mapper_ && !localizer_) map(*frame);
     latest_frame_ = std::move(frame);
   }
+}
+
+void Slam::map(const Frame& frame) {
+  auto submap = mapper_->add(frame.index, frame.stamp, frame.T_odom_base, frame.detections, rng_);
+  if (submap) take(std::move(*submap));
+  if (submap_frames_.empty()) submap_driven_m_ = driven_m_;
+  submap_frames_.push_back(frame);
+}
+
+void Slam::endSubmap() {
+  if (auto submap = mapper_->finish()) take(std::move(*submap));
 }
 
 void Slam::take(Submap submap) {
@@ -117,42 +126,13 @@ EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {
 
 void Slam::finish() {
   if (!mapper_) return;
-  if (auto submap = mapper_->finish()) take(std::move(*submap));
+  endSubmap();
   back_end_->finish();
 }
 
 const std::vector<MapHypothesis>& Slam::hypotheses() const {
   static const std::vector<MapHypothesis> kNone;
   return mapper_ ? mapper_->hypotheses() : kNone;
-}
-
-std::vector<StampedPose> Slam::trajectory() const {
-  std::vector<Pose> odometry;
-  odometry.reserve(odometry_.size());
-  for (const StampedPose& pose : odometry_) odometry.push_back(pose.T_world_base);
-  const std::vector<CorrectionAnchor> anchors = correctionAnchors();
-  const std::vector<Pose> corrected = anchors.empty() ? odometry : correctTrajectory(odometry, anchors);
-  std::vector<StampedPose> trajectory;
-  trajectory.reserve(odometry_.size());
-  for (std::size_t i = 0; i < corrected.size(); ++i) trajectory.push_back({odometry_[i].stamp, corrected[i]});
-  return trajectory;
-}
-
-std::vector<CorrectionAnchor> Slam::correctionAnchors() const {
-  std::vector<CorrectionAnchor> anchors;
-  if (!back_end_) return anchors;
-  const KeyframeMap& map = back_end_->keyframes();
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    const MapKeyframe& keyframe = map.keyframes[k];
-    const auto sample = std::lower_bound(odometry_.begin(), odometry_.end(), keyframe.stamp,
-                                         [](const StampedPose& pose, Stamp stamp) { return pose.stamp < stamp; });
-    if (sample == odometry_.end()) continue;
-    const auto index = static_cast<std::size_t>(sample - odometry_.begin());
-    if (!anchors.empty() && anchors.back().index >= index) continue;
-    const Pose T_keyframe_base = keyframe.T_odom_base.inverse() * sample->T_world_base;
-    anchors.push_back({index, map.T_map_keyframe[k] * T_keyframe_base});
-  }
-  return anchors;
 }
 
 std::vector<MixtureLandmark> Slam::landmarks() const {
@@ -169,11 +149,6 @@ std::vector<MixtureLandmark> Slam::landmarks() const {
     for (MixtureComponent& component : landmark.components) component.position.mean_m += shift_m;
   }
   return landmarks;
-}
-
-std::optional<StampedPose> Slam::latestPose() const {
-  if (odometry_.empty()) return std::nullopt;
-  return StampedPose{odometry_.back().stamp, T_map_odom() * odometry_.back().T_world_base};
 }
 
 }  // namespace semantic_mht_slam

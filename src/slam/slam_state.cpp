@@ -28,6 +28,15 @@ void transfer(StateArchive& archive, SubmapPrediction& prediction) {
   archive(T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad, T_map_keyframe, driven_m);
 }
 
+void transfer(StateArchive& archive, MapFix& fix) {
+  auto& [stamp, T_odom_base, T_map_base] = fix;
+  archive(stamp, T_odom_base, T_map_base);
+}
+
+void Slam::Session::transfer(StateArchive& archive) {
+  archive(first_odometry, first_keyframe, fixes);
+}
+
 void FrameAssembler::WaitingFrame::transfer(StateArchive& archive) {
   archive(index, stamp, detections);
 }
@@ -52,7 +61,11 @@ void Slam::transferInput(StateArchive& archive) {
     throw InputError("made with the method '" + method + "', the present one is '" + nameOf(method_) + "'");
   }
   archive(assembler_, odometry_, latest_frame_, rng_, submap_frames_, driven_m_, submap_driven_m_);
-  archive(prediction_, next_prediction_);
+  archive(prediction_, next_prediction_, sessions_, is_mapping_wanted_);
+  bool is_localizing = localizer_.has_value();
+  archive(is_localizing);
+  if (archive.isReading() && is_localizing) localizer_.emplace(localizer_config_);
+  if (sessions_.empty() || sessions_.back().first_odometry > odometry_.size()) StateArchive::fail("sessions of no odometry");
 }
 
 void Slam::transferSubmaps(StateArchive& archive) {

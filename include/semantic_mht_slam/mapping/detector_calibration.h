@@ -52,6 +52,9 @@ class DetectorCalibration {
   /// Takes the detections of the next frame, base frame.
   void add(const Pose& T_odom_base, const Detections& detections);
 
+  /// The next frame has nothing to do with those before.
+  void forgetFrames() { past_.clear(); }
+
   /// Standard deviations along the line of sight, across it and vertically, metres.
   Eigen::Vector3d noiseStddev(ClassIndex class_index, double range_m) const;
 

@@ -33,6 +33,10 @@ class Mapper {
   /// Ends the current submap; empty if it has no frame.
   std::optional<Submap> finish();
 
+  /// Forgets where things were around the end of the last submap, as after a stretch without mapping. Only between
+  /// submaps, else throws std::logic_error.
+  void forgetSurroundings();
+
   /// The leaves of the current tree, most likely first.
   const std::vector<MapHypothesis>& hypotheses() const { return tree_.leaves(); }
 

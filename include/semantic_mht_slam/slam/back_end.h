@@ -70,6 +70,10 @@ class BackEnd {
   /// Solves the whole graph.
   void finish();
 
+  /// The next keyframe follows the ones before by a pose in the map, known within about a metre, not by odometry;
+  /// `driven_m` then.
+  void goOnAt(const Pose& T_map_odom, double driven_m);
+
   /// Keyframes with their corrected poses.
   const KeyframeMap& keyframes() const { return map_; }
 
@@ -81,6 +85,14 @@ class BackEnd {
 
   /// Every closure that was looked at, in the order of the query.
   const std::vector<LoopClosureRecord>& closures() const { return closures_; }
+
+  const ClassTable& classes() const { return classes_; }
+
+  /// Where a scene is in the map, by its objects alone; needs a second find that agrees. Empty if it is not recognised.
+  std::optional<Pose> locate(const Scene& scene) const;
+
+  /// Where a scene is in the map near an expected pose, `drifted_m` after it was known; empty if that is not clear.
+  std::optional<Pose> findNear(const Scene& scene, const Pose& T_map_base, double drifted_m) const;
 
   /// Every finished submap, by its index.
   const std::vector<SubmapCheck>& checks() const { return checks_; }
@@ -117,6 +129,7 @@ class BackEnd {
   std::vector<SubmapCheck> checks_;
   std::vector<LoopClosureRecord> closures_;
   std::vector<int> closure_of_loop_;  ///< index into `closures_`, by loop of the graph
+  std::optional<Pose> T_map_odom_start_;  ///< of a session that has no keyframe yet
   double closed_at_m_ = 0.0;          ///< distance driven at the last accepted closure
   std::map<LandmarkId, LandmarkId> survivor_of_;
   std::map<LandmarkId, std::set<int>> keyframes_of_;  ///< that saw a landmark of the graph

@@ -54,6 +54,9 @@ class FrameAssembler {
 
   const InputCounters& counters() const { return counters_; }
 
+  /// Another odometry begins: forgets the one so far and what waits for it; counts go on.
+  void beginSession();
+
   /// What waits, the odometry that is kept, and the counters (see `StateArchive`).
   void transfer(StateArchive& archive);
 

@@ -40,6 +40,11 @@ struct KeyframeMap {
 /// frame of `T_map_base`.
 AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config);
 
+/// Lays a scene onto what each pass saw near the pose that `prior` expects. One record for each pass that it might fit;
+/// the query is no keyframe (-1).
+std::vector<LoopClosureRecord> findInMap(const KeyframeMap& map, const Scene& scene, const AlignmentPrior& prior,
+                                         const ClassTable& classes, const RevisitConfig& config);
+
 /// Lays what a keyframe sees onto what each earlier pass, at least `min_driven_m` before, saw near there, all at once,
 /// with the drift since the last closure as prior (see `alignJointly`). One record for each pass that it might fit.
 /// `drifted_m` was driven since the pose was last tied to the earlier map.

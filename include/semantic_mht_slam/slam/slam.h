@@ -12,6 +12,7 @@
 #include "semantic_mht_slam/slam/back_end.h"
 #include "semantic_mht_slam/slam/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
+#include "semantic_mht_slam/slam/localizer.h"
 #include "semantic_mht_slam/slam/slam_state.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
 
@@ -36,6 +37,7 @@ struct SlamConfig {
   FrameAssemblerConfig input;
   MapperConfig mapper;
   BackEndConfig back_end;
+  LocalizerConfig localization;
 };
 
 /// The defaults that belong to a method.
@@ -67,9 +69,9 @@ class Slam {
   void addDetections(Stamp stamp, Detections detections);
 
   /// Correction of the odometry: T_map_base = T_map_odom * T_odom_base.
-  Pose T_map_odom() const { return back_end_ ? back_end_->T_map_odom() : Pose::identity(); }
+  Pose T_map_odom() const;
 
-  /// T_map_base at every odometry sample that was used, in the order of time.
+  /// T_map_base at every odometry sample that was used, in the order of time, one session after the other.
   std::vector<StampedPose> trajectory() const;
 
   /// T_map_base at the newest odometry sample; empty before the first.
@@ -80,6 +82,28 @@ class Slam {
 
   /// Ends the current submap, so that what it saw is in the map.
   void finish();
+
+  /// From now on the map stays as it is, and the vehicle finds itself in it. Where it is, is known if the odometry goes
+  /// on from mapping; else it is looked for (see `Localizer`). Throws std::logic_error if there is no finished submap.
+  void localize();
+
+  /// Maps again. After localization the map goes on where the vehicle was found in it; while it is still lost, mapping
+  /// waits until it is found.
+  void resumeMapping();
+
+  /// The odometry that comes now has nothing to do with the one before, neither its frame nor its stamps: the vehicle is
+  /// lost until it finds itself in the map. Without any finished submap it just begins to map.
+  void beginSession();
+
+  /// Where the base is in the map, from outside, within about `stddev_m`: ends being lost. Has no effect while mapping
+  /// or before any odometry; true if it had one.
+  bool expectAt(const Pose& T_map_base, double stddev_m);
+
+  /// True if the map is not added to: by choice, or because the vehicle is not found yet.
+  bool isLocalizing() const { return localizer_.has_value(); }
+
+  /// True if the vehicle knows where it is in the map.
+  bool isLocated() const { return !localizer_ || localizer_->isLocated(); }
 
   /// The submaps that are finished.
   const SubmapArchive& map() const { return map_; }
@@ -114,10 +138,22 @@ class Slam {
   void transferKeyframes(StateArchive& archive);
   void transferGraph(StateArchive& archive);
   void transferMapper(StateArchive& archive);
+  /// A stretch of one odometry.
+  struct Session {
+    std::size_t first_odometry = 0;
+    std::size_t first_keyframe = 0;
+    std::vector<MapFix> fixes;  ///< by localization
+
+    void transfer(StateArchive& archive);
+  };
+
   void processReadyFrames();
+  void map(const Frame& frame);
+  void localizeBy(const Frame& frame);
+  void endSubmap();
   void take(Submap submap);
   EarlierMap earlierMap(const Pose& T_odom_submap);
-  std::vector<CorrectionAnchor> correctionAnchors() const;
+  std::vector<CorrectionAnchor> correctionAnchors(std::size_t session) const;
 
   Method method_;
   FrameAssembler assembler_;
@@ -134,6 +170,10 @@ class Slam {
   int earlier_after_submaps_ = 0;  ///< what was not seen in so many submaps is of an earlier pass
   SubmapArchive map_;
   std::vector<StampedPose> odometry_;
+  std::vector<Session> sessions_{1};
+  LocalizerConfig localizer_config_;
+  std::optional<Localizer> localizer_;  ///< while the map is not added to
+  bool is_mapping_wanted_ = true;
   std::optional<Frame> latest_frame_;
 };
 

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/slam/back_end.h"
+#include "semantic_mht_slam/slam/frame.h"
+
+namespace semantic_mht_slam {
+
+/// How a vehicle finds and keeps its pose in a finished map.
+struct LocalizerConfig {
+  double window_m = 20.0;
+  double step_m = 4.0;
+  double agree_m = 2.0;
+  double agree_rad = 0.06;
+  double min_apart_m = 8.0;
+  double max_apart_m = 40.0;
+  double lost_after_m = 100.0;
+};
+
+void describe(LocalizerConfig& config, Fields& fields);
+
+/// A moment at which the pose in the map was found.
+struct MapFix {
+  Stamp stamp = 0;
+  Pose T_odom_base;
+  Pose T_map_base;
+};
+
+/// Finds the vehicle in a finished map and follows it, without changing the map. While it is lost, what was seen over the
+/// last metres is looked for among all keyframes by its objects alone (`BackEnd::locate`); the pose is believed once two
+/// finds, some metres apart, agree. From then on the same scene is laid onto the map near the expected pose
+/// (`findInMap`). Without success for `lost_after_m` it is lost again.
+class Localizer {
+ public:
+  explicit Localizer(const LocalizerConfig& config) : config_(config) {}
+
+  /// Where the vehicle is believed to be, from outside: tracking begins there, with `stddev_m` as its uncertainty.
+  void expectAt(const Pose& T_map_odom, double stddev_m);
+
+  /// The next frame, with detections free of bias. True if it led to a fix.
+  bool add(const Frame& frame, const BackEnd& map);
+
+  bool isLocated() const { return is_located_; }
+
+  /// Correction of the odometry; empty before the first fix.
+  const std::optional<Pose>& T_map_odom() const { return T_map_odom_; }
+
+  /// The newest fix; only after one.
+  const MapFix& fix() const { return *fix_; }
+
+ private:
+  struct Find {
+    double driven_m = 0.0;
+    Pose T_map_odom;
+  };
+
+  Scene scene(const ClassTable& classes) const;
+  bool search(const Scene& scene, const BackEnd& map);
+  bool track(const Scene& scene, const BackEnd& map);
+  bool agree(const Find& a, const Find& b) const;
+  void settle(const Pose& T_map_odom);
+
+  LocalizerConfig config_;
+  std::deque<Frame> window_;
+  std::deque<double> window_driven_m_;
+  double driven_m_ = 0.0;
+  double attempted_m_ = 0.0;
+  double fixed_m_ = 0.0;        ///< driven at the last fix
+  double prior_drift_m_ = 0.0;  ///< what the uncertainty of the last fix counts for, as distance
+  std::deque<Find> finds_;
+  bool is_located_ = false;
+  std::optional<Pose> T_map_odom_;
+  std::optional<MapFix> fix_;
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,104 @@
+#include "semantic_mht_slam/slam/localizer.h"
+
+#include <algorithm>
+
+#include "semantic_mht_slam/place/scene_accumulation.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr std::size_t kMinObjects = 6;
+
+}  // namespace
+
+void describe(LocalizerConfig& config, Fields& fields) {
+  fields.add("window", config.window_m, "m", {1.0, 200.0},
+             "What was seen over this distance is compared with the map.");
+  fields.add("step", config.step_m, "m", {0.5, 100.0}, "Distance between two comparisons.");
+  fields.add("agree_distance", config.agree_m, "m", {0.1, 100.0}, "Two finds agree if they differ by no more,");
+  fields.add("agree_angle", config.agree_rad, "rad", {0.001, 3.0}, "and in heading by no more.");
+  fields.add("min_apart", config.min_apart_m, "m", {0.0, 1000.0},
+             "Two finds that confirm each other are so far apart,");
+  fields.add("max_apart", config.max_apart_m, "m", {1.0, 1000.0}, "and no further.");
+  fields.add("lost_after", config.lost_after_m, "m", {1.0, 10000.0}, "Lost after this distance without a fix.");
+}
+
+void Localizer::expectAt(const Pose& T_map_odom, double stddev_m) {
+  is_located_ = true;
+  T_map_odom_ = T_map_odom;
+  fixed_m_ = driven_m_;
+  const RevisitConfig noise;
+  prior_drift_m_ = std::max(0.0, (stddev_m - noise.base_stddev_m) / noise.drift_per_m);
+}
+
+bool Localizer::add(const Frame& frame, const BackEnd& map) {
+  if (!window_.empty()) {
+    driven_m_ += (frame.T_odom_base.translation_m - window_.back().T_odom_base.translation_m).norm();
+  }
+  window_.push_back(frame);
+  window_driven_m_.push_back(driven_m_);
+  while (driven_m_ - window_driven_m_.front() > config_.window_m) {
+    window_.pop_front();
+    window_driven_m_.pop_front();
+  }
+  if (driven_m_ - attempted_m_ < config_.step_m) return false;
+  attempted_m_ = driven_m_;
+  if (is_located_ && driven_m_ - fixed_m_ > config_.lost_after_m) is_located_ = false;
+  const Scene seen = scene(map.classes());
+  if (seen.objects.size() < kMinObjects) return false;
+  return is_located_ ? track(seen, map) : search(seen, map);
+}
+
+Scene Localizer::scene(const ClassTable& classes) const {
+  std::vector<Detections> frames;
+  std::vector<Pose> T_base_frame;
+  const Pose T_base_odom = window_.back().T_odom_base.inverse();
+  for (const Frame& frame : window_) {
+    frames.push_back(frame.detections);
+    T_base_frame.push_back(T_base_odom * frame.T_odom_base);
+  }
+  return accumulateScene(frames, T_base_frame, classes);
+}
+
+bool Localizer::agree(const Find& a, const Find& b) const {
+  const double apart_m = b.driven_m - a.driven_m;
+  if (apart_m < config_.min_apart_m || apart_m > config_.max_apart_m) return false;
+  const Pose& T_odom_base = window_.back().T_odom_base;
+  const Pose by_a = a.T_map_odom * T_odom_base;
+  const Pose by_b = b.T_map_odom * T_odom_base;
+  return (by_a.translation_m - by_b.translation_m).head<2>().norm() < config_.agree_m &&
+         angularDistance(by_a.rotation, by_b.rotation) < config_.agree_rad;
+}
+
+bool Localizer::search(const Scene& seen, const BackEnd& map) {
+  const std::optional<Pose> T_map_base = map.locate(seen);
+  if (!T_map_base) return false;
+  const Find find{driven_m_, *T_map_base * window_.back().T_odom_base.inverse()};
+  const bool is_confirmed =
+      std::any_of(finds_.begin(), finds_.end(), [&](const Find& earlier) { return agree(earlier, find); });
+  finds_.push_back(find);
+  while (driven_m_ - finds_.front().driven_m > config_.max_apart_m) finds_.pop_front();
+  if (!is_confirmed) return false;
+  finds_.clear();
+  is_located_ = true;
+  settle(find.T_map_odom);
+  return true;
+}
+
+bool Localizer::track(const Scene& seen, const BackEnd& map) {
+  const Pose T_map_base = *T_map_odom_ * window_.back().T_odom_base;
+  const std::optional<Pose> found = map.findNear(seen, T_map_base, driven_m_ - fixed_m_ + prior_drift_m_);
+  if (!found) return false;
+  settle(*found * window_.back().T_odom_base.inverse());
+  return true;
+}
+
+void Localizer::settle(const Pose& T_map_odom) {
+  const Frame& newest = window_.back();
+  T_map_odom_ = T_map_odom;
+  fixed_m_ = driven_m_;
+  prior_drift_m_ = 0.0;
+  fix_ = MapFix{newest.stamp, newest.T_odom_base, T_map_odom * newest.T_odom_base};
+}
+
+}  // namespace semantic_mht_slam

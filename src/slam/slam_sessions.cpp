@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <stdexcept>
+
+#include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/slam/slam.h"
+
+// One map, several drives: finding oneself in it, going on in it, and the trajectories of all drives.
+namespace semantic_mht_slam {
+namespace {
+
+/// Driven between two sessions, for whoever takes what was driven lately for one pass.
+constexpr double kBetweenSessions_m = 1000.0;
+
+}  // namespace
+
+void Slam::localize() {
+  if (!back_end_) throw std::logic_error("Slam: this method makes no map to localize in");
+  if (!localizer_) {
+    const Pose T_map_odom = back_end_->T_map_odom();
+    endSubmap();
+    if (map_.submaps().empty()) throw std::logic_error("Slam: there is no map to localize in");
+    localizer_.emplace(localizer_config_);
+    localizer_->expectAt(map_.submaps().empty() ? T_map_odom : back_end_->T_map_odom(), 0.0);
+  }
+  is_mapping_wanted_ = false;
+}
+
+void Slam::resumeMapping() {
+  is_mapping_wanted_ = true;
+  if (!localizer_ || !localizer_->isLocated()) return;
+  driven_m_ += kBetweenSessions_m;
+  back_end_->goOnAt(*localizer_->T_map_odom(), driven_m_);
+  mapper_->forgetSurroundings();
+  localizer_.reset();
+}
+
+void Slam::beginSession() {
+  if (mapper_) endSubmap();
+  assembler_.beginSession();
+  latest_frame_.reset();
+  const bool has_map = back_end_ && !map_.submaps().empty();
+  sessions_.push_back({odometry_.size(), has_map ? back_end_->keyframes().keyframes.size() : 0, {}});
+  localizer_.reset();
+  if (has_map) localizer_.emplace(localizer_config_);
+}
+
+bool Slam::expectAt(const Pose& T_map_base, double stddev_m) {
+  if (!localizer_ || odometry_.size() == sessions_.back().first_odometry) return false;
+  localizer_->expectAt(T_map_base * odometry_.back().T_world_base.inverse(), stddev_m);
+  return true;
+}
+
+void Slam::localizeBy(const Frame& frame) {
+  Frame corrected = frame;
+  for (Detection& detection : corrected.detections) detection = mapper_->corrected(detection);
+  if (localizer_->add(corrected, *back_end_)) {
+    sessions_.back().fixes.push_back(localizer_->fix());
+    if (is_mapping_wanted_) resumeMapping();
+  }
+}
+
+Pose Slam::T_map_odom() const {
+  if (localizer_) return localizer_->T_map_odom().value_or(Pose::identity());
+  return back_end_ ? back_end_->T_map_odom() : Pose::identity();
+}
+
+std::vector<StampedPose> Slam::trajectory() const {
+  std::vector<StampedPose> trajectory;
+  trajectory.reserve(odometry_.size());
+  for (std::size_t s = 0; s < sessions_.size(); ++s) {
+    const std::size_t begin = sessions_[s].first_odometry;
+    const std::size_t end = s + 1 < sessions_.size() ? sessions_[s + 1].first_odometry : odometry_.size();
+    std::vector<Pose> odometry;
+    for (std::size_t i = begin; i < end; ++i) odometry.push_back(odometry_[i].T_world_base);
+    const std::vector<CorrectionAnchor> anchors = correctionAnchors(s);
+    const std::vector<Pose> corrected = anchors.empty() ? odometry : correctTrajectory(odometry, anchors);
+    for (std::size_t i = begin; i < end; ++i) trajectory.push_back({odometry_[i].stamp, corrected[i - begin]});
+  }
+  return trajectory;
+}
+
+std::vector<CorrectionAnchor> Slam::correctionAnchors(std::size_t session) const {
+  std::vector<CorrectionAnchor> anchors;
+  if (!back_end_) return anchors;
+  const KeyframeMap& map = back_end_->keyframes();
+  const bool is_last = session + 1 == sessions_.size();
+  const std::size_t end_keyframe = is_last ? map.keyframes.size() : sessions_[session + 1].first_keyframe;
+  std::vector<MapFix> fixes = sessions_[session].fixes;
+  for (std::size_t k = sessions_[session].first_keyframe; k < end_keyframe; ++k) {
+    fixes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.T_map_keyframe[k]});
+  }
+  std::stable_sort(fixes.begin(), fixes.end(), [](const MapFix& a, const MapFix& b) { return a.stamp < b.stamp; });
+  const auto begin = odometry_.begin() + static_cast<std::ptrdiff_t>(sessions_[session].first_odometry);
+  const auto end = is_last ? odometry_.end()
+                           : odometry_.begin() + static_cast<std::ptrdiff_t>(sessions_[session + 1].first_odometry);
+  for (const MapFix& fix : fixes) {
+    const auto sample = std::lower_bound(begin, end, fix.stamp,
+                                         [](const StampedPose& pose, Stamp stamp) { return pose.stamp < stamp; });
+    if (sample == end) continue;
+    const auto index = static_cast<std::size_t>(sample - begin);
+    if (!anchors.empty() && anchors.back().index >= index) continue;
+    const Pose T_fix_base = fix.T_odom_base.inverse() * sample->T_world_base;
+    anchors.push_back({index, fix.T_map_base * T_fix_base});
+  }
+  return anchors;
+}
+
+std::optional<StampedPose> Slam::latestPose() const {
+  if (odometry_.size() == sessions_.back().first_odometry) return std::nullopt;
+  return StampedPose{odometry_.back().stamp, T_map_odom() * odometry_.back().T_world_base};
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,112 @@
+#include "semantic_mht_slam/slam/localizer.h"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "semantic_mht_slam/slam/slam.h"
+
+#include "support/square_drive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+/// A map of one round, and a second session in an odometry frame of its own.
+class LocalizerTest : public testing::TestWithParam<int> {
+ protected:
+  LocalizerTest() : drive_(static_cast<std::uint64_t>(GetParam())), slam_(defaultsOf(Method::kDpmhm), makeStreetClasses()) {
+    drive_.feed(slam_, 0, 500);
+    slam_.finish();
+  }
+
+  /// Feeds frames as another session: its odometry begins at its own origin, its stamps at 0.
+  void feed(int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Pose T_odom_base = SquareDrive::odometryAt(first_).inverse() * SquareDrive::odometryAt(i);
+      slam_.addOdometry({SquareDrive::stampAt(i - first_), T_odom_base});
+      slam_.addDetections(SquareDrive::stampAt(i - first_) - 30000000, drive_.detectionsAt(i));
+    }
+  }
+
+  void beginAt(int first) {
+    first_ = first;
+    slam_.beginSession();
+  }
+
+  /// Horizontal distance of the present pose from where the first round has been at the same place.
+  double errorAt(int i) const {
+    const auto first_round = slam_.trajectory();
+    const Pose& T_map_there = first_round[static_cast<std::size_t>(i % 480)].T_world_base;
+    return (slam_.latestPose()->T_world_base.translation_m - T_map_there.translation_m).head<2>().norm();
+  }
+
+  SquareDrive drive_;
+  Slam slam_;
+  int first_ = 0;
+};
+
+TEST_P(LocalizerTest, LostVehicleFindsItselfAndTracksWithoutChangingTheMap) {
+  slam_.localize();
+  const std::size_t submaps = slam_.map().submaps().size();
+  const std::size_t landmarks = slam_.landmarks().size();
+  for (const int start : {40, 170, 333}) {
+    beginAt(start);
+    EXPECT_FALSE(slam_.isLocated());
+    int i = start;
+    while (!slam_.isLocated() && i < start + 50) feed(i, i + 1), ++i;
+    ASSERT_TRUE(slam_.isLocated()) << start;
+    for (; i < start + 120; ++i) {
+      feed(i, i + 1);
+      EXPECT_LT(errorAt(i), 1.0) << start << " " << i;
+    }
+  }
+  EXPECT_EQ(slam_.map().submaps().size(), submaps);
+  EXPECT_EQ(slam_.landmarks().size(), landmarks);
+}
+
+TEST_P(LocalizerTest, PoseFromOutsideEndsBeingLost) {
+  slam_.localize();
+  beginAt(100);
+  EXPECT_FALSE(slam_.expectAt(Pose::identity(), 1.0)) << "without odometry nobody knows when that was";
+  feed(100, 101);
+  Pose T_map_base = slam_.trajectory()[100].T_world_base;
+  T_map_base.translation_m.x() += 1.5;
+  EXPECT_TRUE(slam_.expectAt(T_map_base, 2.0));
+  EXPECT_TRUE(slam_.isLocated());
+  feed(101, 160);
+  EXPECT_LT(errorAt(159), 1.0);
+}
+
+TEST_P(LocalizerTest, AnotherSessionGoesOnInTheSameMap) {
+  const std::size_t submaps = slam_.map().submaps().size();
+  const std::size_t landmarks = slam_.landmarks().size();
+  beginAt(700);
+  feed(700, 1000);
+  slam_.finish();
+  EXPECT_FALSE(slam_.isLocalizing());
+  EXPECT_GT(slam_.map().submaps().size(), submaps + 5);
+  EXPECT_LT(slam_.landmarks().size(), landmarks + landmarks / 4) << "what was known is not mapped twice";
+  EXPECT_LT(errorAt(999), 1.0);
+  int accepted = 0;
+  for (const LoopClosureRecord& record : slam_.backEnd()->closures()) accepted += record.is_accepted ? 1 : 0;
+  EXPECT_GT(accepted, 5);
+}
+
+TEST_P(LocalizerTest, ElsewhereItStaysLost) {
+  slam_.localize();
+  const SquareDrive elsewhere(static_cast<std::uint64_t>(GetParam()) + 100);
+  slam_.beginSession();
+  elsewhere.feed(slam_, 0, 300);
+  EXPECT_FALSE(slam_.isLocated());
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, LocalizerTest, testing::Values(1, 2, 3));
+
+TEST(LocalizerErrorTest, WithoutAMapThereIsNothingToLocalizeIn) {
+  Slam slam(defaultsOf(Method::kDpmhm), makeStreetClasses());
+  EXPECT_THROW(slam.localize(), std::logic_error);
+  EXPECT_THROW(Slam(defaultsOf(Method::kOdometry), makeStreetClasses()).localize(), std::logic_error);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
