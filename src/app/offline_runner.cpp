@@ -40,6 +40,10 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   RunResult result;
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
   const std::size_t known = slam.trajectory().size();
+  const std::optional<StampedPose> last = slam.latestOdometry();
+  const bool is_another_drive =
+      start != nullptr && last && !recording.odometry.empty() && !goesOn(*last, recording.odometry.front());
+  if (is_another_drive) slam.beginSession();
   const auto begin = Clock::now();
   auto frame = recording.detector_frames.begin();
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {

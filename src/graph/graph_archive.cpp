@@ -1,11 +1,11 @@
-#include <algorithm>
+#include "graph_archive.h"
+
 #include <map>
 
 #include <Eigen/LU>
 
-#include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/common/error.h"
 
-#include "graph_state.h"
 #include "hierarchy.h"
 #include "loop_review.h"
 #include "skeleton.h"
@@ -91,6 +91,28 @@ void LoopReview::transfer(StateArchive& archive, const GraphState& graph) {
     const auto& [from, to, T_from_to, cov] = loop.constraint;
     loops_.push_back(makeTestedLoop<3>(from, to, T_from_to, cov));
   }
+}
+
+void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::vector<OdometryStep>& odometry,
+                   GraphState& graph, LoopReview& review) {
+  int window_submaps = config.window_submaps;
+  int chunk_submaps = config.chunk_submaps;
+  archive(window_submaps, chunk_submaps);
+  if (window_submaps != config.window_submaps || chunk_submaps != config.chunk_submaps) {
+    throw InputError("made with graph.window_submaps " + std::to_string(window_submaps) + " and graph.chunk_submaps " +
+                     std::to_string(chunk_submaps) + ", other ones than now");
+  }
+  archive(odometry, graph);
+  if (odometry.size() != graph.submaps.size()) StateArchive::fail("a graph with more submaps than odometry");
+  if (archive.isReading()) {
+    for (std::size_t i = 0; i < odometry.size(); ++i) {
+      const auto& [T_previous_submap, cov] = odometry[i];
+      review.extendOdometry(T_previous_submap, cov, i == 0);
+      if (i == 0) continue;
+      graph.submaps[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_submap, cov.inverse());
+    }
+  }
+  review.transfer(archive, graph);
 }
 
 void Hierarchy::LoopLink::transfer(StateArchive& archive) {

@@ -5,10 +5,10 @@
 
 #include <Eigen/LU>
 
-#include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/state_archive.h"
 
 #include "deadline.h"
+#include "graph_archive.h"
 #include "hierarchy.h"
 #include "loop_review.h"
 #include "pose_graph_checks.h"
@@ -21,14 +21,6 @@ constexpr int kFullIterations = 50;
 constexpr double kFullTolerance = 1e-6;  // of the cost; what is left of the poses is a few centimetres
 constexpr int kRepairIterations = 1;     // an interpolated piece is so near its optimum that one step reaches it
 constexpr double kWindowShare = 0.5;     // of a time budget, so that loop closures get the rest
-
-/// As it was added, to begin the sums over it again.
-struct OdometryStep {
-  Pose T_previous_submap;
-  PoseCov cov;
-
-  void transfer(StateArchive& archive) { archive(T_previous_submap, cov); }
-};
 
 std::vector<int> range(int first, int end) {
   std::vector<int> numbers(end - first);
@@ -115,25 +107,7 @@ void PoseGraph::Impl::mergeLandmarks(std::int64_t merged, std::int64_t survivor)
 }
 
 void PoseGraph::Impl::transfer(StateArchive& archive) {
-  int window_submaps = config_.window_submaps;
-  int chunk_submaps = config_.chunk_submaps;
-  archive(window_submaps, chunk_submaps);
-  if (window_submaps != config_.window_submaps || chunk_submaps != config_.chunk_submaps) {
-    throw InputError("made with graph.window_submaps " + std::to_string(window_submaps) + " and graph.chunk_submaps " +
-                     std::to_string(chunk_submaps) + ", other ones than now");
-  }
-  archive(odometry_, graph_);
-  if (odometry_.size() != graph_.submaps.size()) StateArchive::fail("a graph with more submaps than odometry");
-  if (archive.isReading()) {
-    for (std::size_t i = 0; i < odometry_.size(); ++i) {
-      const auto& [T_previous_submap, cov] = odometry_[i];
-      review_.extendOdometry(T_previous_submap, cov, i == 0);
-      if (i > 0) {
-        graph_.submaps[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_submap, cov.inverse());
-      }
-    }
-  }
-  review_.transfer(archive, graph_);
+  transferGraph(archive, config_, odometry_, graph_, review_);
   archive(hierarchy_, in_hierarchy_, reported_);
 }
 

@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/ros/slam_node.h"
 
 #include <chrono>
+#include <utility>
 
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/parameters.h"
@@ -40,6 +41,7 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
 SlamNode::~SlamNode() {
   odometry_subscriber_.shutdown();
   objects_subscriber_.shutdown();
+  initial_pose_subscriber_.shutdown();
   services_.clear();
   diagnostics_.reset();
   slow_timer_.stop();
@@ -50,6 +52,9 @@ SlamNode::~SlamNode() {
 void SlamNode::subscribe() {
   odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry>(
       "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); });
+  initial_pose_subscriber_ = handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+      "initialpose", 1,
+      [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) { expectAt(*message); });
   objects_subscriber_ = handle_.subscribe<SemanticObjectArray>(
       "objects", kSubscriberQueue, [this](const SemanticObjectArrayConstPtr& message) { receive(message); });
 }
@@ -95,12 +100,14 @@ void SlamNode::work() {
 void SlamNode::handle(const nav_msgs::Odometry& message) {
   if (!isExpectedFrame(message)) return;
   const Stamp stamp = toStamp(message.header.stamp);
+  if (std::exchange(is_loaded_, false)) beginSessionUnlessGoingOn(message);
   if (jump_.isUnconfirmed(stamp, latestStamp())) return jump_.hold(message);
   if (const auto jumped = jump_.takeConfirmed(stamp, latestStamp())) {
     if (toStamp(jumped->header.stamp) < *latestStamp()) {
-      ROS_WARN("time jumped back from %.3f s to %.3f s: starting a new map", secondsFromStamp(*latestStamp()),
-               secondsFromStamp(stamp));
-      startAgain();
+      const bool keeps_map = slam_->isLocalizing();
+      ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latestStamp()), secondsFromStamp(stamp),
+               keeps_map ? "looking for the place in the map" : "starting a new map");
+      keeps_map ? slam_->beginSession() : startAgain();
     }
     process(*jumped);
   }
@@ -108,10 +115,18 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
   retryObjects();
 }
 
+void SlamNode::beginSessionUnlessGoingOn(const nav_msgs::Odometry& message) {
+  const StampedPose next{toStamp(message.header.stamp), fromMessage(message.pose.pose)};
+  const std::optional<StampedPose> last = slam_->latestOdometry();
+  if (last && goesOn(*last, next)) return;
+  ROS_INFO("the odometry does not go on where the loaded map ends: looking for the place in the map");
+  slam_->beginSession();
+}
+
 void SlamNode::process(const nav_msgs::Odometry& message) {
   if (!slam_->addOdometry({toStamp(message.header.stamp), fromMessage(message.pose.pose)})) return;
   const LiveConfig live = live_.get();
-  publisher_.publishPose(*slam_, live);
+  if (slam_->isLocated()) publisher_.publishPose(*slam_, live);
   publisher_.publishFrame(*slam_, live);
 }
 
@@ -138,6 +153,7 @@ void SlamNode::startAgain() {
   slam_ = std::make_unique<Slam>(config_.slam, classes_);
   publisher_.startAgain(*slam_);
   published_odometry_ = 0;
+  is_localization_wanted_ = false;
   ++estimator_.resets;
 }
 
@@ -173,6 +189,8 @@ void SlamNode::add(const SemanticObjectArray& message, const Pose& T_base_sensor
 
 void SlamNode::noteStatus() {
   estimator_.counters = slam_->counters();
+  estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
+  if (!slam_->isLocated()) estimator_.mode += ", lost";
   estimator_.hypotheses = slam_->hypotheses().size();
   estimator_.submaps = slam_->map().submaps().size();
   estimator_.landmarks = publisher_.landmarks();

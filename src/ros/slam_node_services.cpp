@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/map_file.h"
@@ -79,6 +83,8 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
   }
   const std::lock_guard<TicketMutex> lock(slam_mutex_);
   slam_ = std::move(loaded);
+  is_loaded_ = true;
+  if (is_localization_wanted_ && !slam_->map().submaps().empty()) slam_->localize();
   waiting_objects_.clear();
   published_odometry_ = 0;
   publisher_.showLoaded(*slam_, live_.get());
@@ -91,15 +97,40 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
 }
 
 bool SlamNode::setMode(SetMode::Request& request, SetMode::Response& response) {
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
   if (request.mode == SetMode::Request::MAPPING) {
+    slam_->resumeMapping();
+    is_localization_wanted_ = false;
     response.success = true;
-    response.message = "mapping";
+    response.message = slam_->isLocated() ? "mapping" : "mapping, as soon as the vehicle has found itself in the map";
   } else if (request.mode == SetMode::Request::LOCALIZATION) {
-    response.message = "no map is loaded that one could find oneself in; the node goes on mapping";
+    try {
+      slam_->localize();
+      is_localization_wanted_ = true;
+      response.success = true;
+      response.message = slam_->isLocated() ? "localization" : "localization; the vehicle looks for itself in the map";
+      publisher_.publishMap(*slam_, live_.get());
+    } catch (const std::logic_error&) {
+      response.message = "there is no map yet that one could find oneself in; the node goes on mapping";
+    }
   } else {
     response.message = "there is no mode " + std::to_string(request.mode) + "; 0 is mapping, 1 localization";
   }
+  noteStatus();
   return true;
+}
+
+void SlamNode::expectAt(const geometry_msgs::PoseWithCovarianceStamped& message) {
+  const Pose T_map_base = fromMessage(message.pose.pose);
+  if (withoutSlash(message.header.frame_id) != config_.node.map_frame || !T_map_base.isValid()) {
+    ROS_WARN("initialpose is ignored: it is no pose in '%s'", config_.node.map_frame.c_str());
+    return;
+  }
+  const double stddev_m = std::sqrt(std::max({0.0, message.pose.covariance[0], message.pose.covariance[7]}));
+  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  if (!slam_->expectAt(T_map_base, stddev_m)) {
+    ROS_WARN("initialpose is ignored: the node does not localize, or has no odometry yet");
+  }
 }
 
 ClockStatus SlamNode::clockStatus() {

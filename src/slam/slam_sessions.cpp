@@ -11,7 +11,16 @@ namespace {
 /// Driven between two sessions, for whoever takes what was driven lately for one pass.
 constexpr double kBetweenSessions_m = 1000.0;
 
+constexpr double kMaxPause_s = 60.0;
+constexpr double kMaxSpeed_m_s = 60.0;
+
 }  // namespace
+
+bool goesOn(const StampedPose& last, const StampedPose& next) {
+  const double pause_s = secondsFromStamp(next.stamp - last.stamp);
+  const double way_m = (next.T_world_base.translation_m - last.T_world_base.translation_m).norm();
+  return pause_s > 0.0 && pause_s <= kMaxPause_s && way_m <= kMaxSpeed_m_s * pause_s;
+}
 
 void Slam::localize() {
   if (!back_end_) throw std::logic_error("Slam: this method makes no map to localize in");
@@ -105,9 +114,15 @@ std::vector<CorrectionAnchor> Slam::correctionAnchors(std::size_t session) const
   return anchors;
 }
 
-std::optional<StampedPose> Slam::latestPose() const {
+std::optional<StampedPose> Slam::latestOdometry() const {
   if (odometry_.size() == sessions_.back().first_odometry) return std::nullopt;
-  return StampedPose{odometry_.back().stamp, T_map_odom() * odometry_.back().T_world_base};
+  return odometry_.back();
+}
+
+std::optional<StampedPose> Slam::latestPose() const {
+  const std::optional<StampedPose> odometry = latestOdometry();
+  if (!odometry) return std::nullopt;
+  return StampedPose{odometry->stamp, T_map_odom() * odometry->T_world_base};
 }
 
 }  // namespace semantic_mht_slam

@@ -138,8 +138,8 @@ INSTANTIATE_TEST_SUITE_P(AllSequences, KittiSlamTest,
                                            KittiBar{"06", "lo_simple", 0.22}, KittiBar{"06", "vo_dfvo", 0.6},
                                            KittiBar{"07", "vo_orb", 0.42}, KittiBar{"07", "lo_simple", 0.5},
                                            KittiBar{"07", "vo_dfvo", 0.6}),
-                         [](const ::testing::TestParamInfo<KittiBar>& info) {
-                           return std::string("Sequence") + info.param.sequence + "With" + info.param.odometry;
+                         [](const ::testing::TestParamInfo<KittiBar>& tested) {
+                           return std::string("Sequence") + tested.param.sequence + "With" + tested.param.odometry;
                          });
 
 }  // namespace

@@ -169,7 +169,8 @@ TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
 TEST_F(MapFileTest, FailedWritesLeaveTheOldFileAlone) {
   const std::string content = readFile(path_);
   expectInputError([&] { writeMapFile(folder_.path(), map_, config_, classes_); }, {"cannot write"});
-  expectInputError([&] { writeMapFile(folder_ / "no/such/folder/map.bag", map_, config_, classes_); }, {"cannot write"});
+  expectInputError([&] { writeMapFile(folder_ / "no/such/folder/map.bag", map_, config_, classes_); },
+                   {"cannot write"});
   EXPECT_TRUE(readFile(path_) == content);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1) << "no temporary file is left";
 }

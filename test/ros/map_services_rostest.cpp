@@ -8,6 +8,7 @@
 
 #include <semantic_mht_slam/LoadMap.h>
 #include <semantic_mht_slam/SaveMap.h>
+#include <semantic_mht_slam/SetMode.h>
 
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/ros/map_file.h"
@@ -37,15 +38,16 @@ class DrivingNode {
            waitFor([this] { return odometry_.getNumSubscribers() > 0 && objects_.getNumSubscribers() > 0; });
   }
 
-  /// Sends frames [begin, end) and waits until the node has used all frames up to `end`.
-  bool feed(int begin, int end) {
+  /// Sends frames [begin, end) and waits until the node has used all frames up to `end`, or so many.
+  bool feed(int begin, int end) { return feed(begin, end, end); }
+  bool feed(int begin, int end, int frames_used) {
     for (int i = begin; i < end; ++i) {
       const StampedPose odometry{SquareDrive::stampAt(i), SquareDrive::odometryAt(i)};
       objects_.publish(toMessage(odometry.stamp, "base_link", drive_.detectionsAt(i), table_));
       odometry_.publish(toOdometry(odometry, "odom", "base_link"));
       ros::WallDuration(0.002).sleep();
     }
-    return waitFor([&] { return node.value("objects", "frames used") == std::to_string(end); }, 60.0);
+    return waitFor([&] { return node.value("objects", "frames used") == std::to_string(frames_used); }, 60.0);
   }
 
   template <class Service>
@@ -192,6 +194,32 @@ TEST(MapServicesTest, NodeThatIsKilledWhileSavingLeavesAWholeFile) {
     EXPECT_NO_THROW(readMapFile(path, config, classes, [] { return true; })) << trial;
   }
   EXPECT_GT(untouched, 0) << "none was killed before it had finished";
+}
+
+TEST(MapServicesTest, AnotherDriveFindsItselfInALoadedMapAndLeavesItAsItIs) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "map.bag";
+  DrivingNode driving("localizing");
+  ASSERT_TRUE(driving.isReady());
+  SetMode::Request mode;
+  mode.mode = SetMode::Request::LOCALIZATION;
+  EXPECT_FALSE(driving.call<SetMode>("set_mode", mode).success) << "without a map";
+  ASSERT_TRUE(driving.feed(0, 480));
+  ASSERT_TRUE(driving.save(path).success);
+  EXPECT_TRUE(driving.call<std_srvs::Trigger>("reset").success);
+  ASSERT_TRUE(driving.load(path).success);
+  ASSERT_TRUE(driving.call<SetMode>("set_mode", mode).success);
+  const std::string submaps = driving.node.value("estimator", "submaps");
+  ASSERT_TRUE(driving.feed(100, 110, 490)) << "stamps go back: another drive";
+  EXPECT_TRUE(driving.node.comesToSay("estimator", "mode", "localization, lost"));
+  ASSERT_TRUE(driving.feed(110, 200, 580));
+  EXPECT_TRUE(driving.node.comesToSay("estimator", "mode", "localization"));
+  const std::string after = driving.node.value("estimator", "submaps");
+  mode.mode = SetMode::Request::MAPPING;
+  EXPECT_TRUE(driving.call<SetMode>("set_mode", mode).success);
+  ASSERT_TRUE(driving.feed(200, 300, 680));
+  EXPECT_TRUE(driving.call<std_srvs::Trigger>("finish_submap").success);
+  EXPECT_TRUE(waitFor([&] { return driving.node.value("estimator", "submaps") != after; })) << "the map grows again";
 }
 
 TEST(MapServicesTest, InterruptEndsTheNodeWithinTwoSecondsWhileItLoads) {

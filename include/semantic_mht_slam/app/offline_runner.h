@@ -23,14 +23,14 @@ struct SubmapResult {
 
 /// What a run over a recording gave.
 struct RunResult {
-  std::vector<StampedPose> trajectory;  ///< T_map_base at every odometry sample of the recording that was used
+  std::vector<StampedPose> trajectory;         ///< T_map_base at every odometry sample of the recording that was used
   std::vector<StampedPose> online_trajectory;  ///< T_map_base as it was known at each of these moments
   std::vector<LoopClosureResult> loop_closures;
   InputCounters counters;
   std::vector<MixtureLandmark> landmarks;          ///< map frame, by rising id
   std::vector<DetectionAssociation> associations;  ///< of every detection that was used
   std::size_t submaps = 0;
-  std::vector<SubmapResult> submap_checks;  ///< of the submaps with frames; none without map
+  std::vector<SubmapResult> submap_checks;    ///< of the submaps with frames; none without map
   SlamState state;                            ///< to go on from
   std::vector<StampedPose> whole_trajectory;  ///< with that of the map that the run began with
   std::vector<int> hypotheses;                ///< living ones after each odometry sample
@@ -42,8 +42,8 @@ struct RunResult {
 using ProgressCallback = std::function<void(std::size_t, std::size_t)>;
 
 /// Feeds a recording to the estimator in the order of stamps, as fast as it goes.
-/// With `start`, goes on from that state; frames are counted on, too. Throws InputError if nothing of the odometry could
-/// be used, or if the state does not fit.
+/// With `start`, goes on from that state (as another session if the odometry does not go on); frames are counted on,
+/// too. Throws InputError if nothing of the odometry could be used, or if the state does not fit.
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
                      const ProgressCallback& progress, const SlamState* start = nullptr);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
@@ -60,6 +61,7 @@ class SlamNode {
   void handle(const nav_msgs::Odometry& message);
   void handle(const SemanticObjectArray& message);
   void process(const nav_msgs::Odometry& message);
+  void beginSessionUnlessGoingOn(const nav_msgs::Odometry& message);
   bool isExpectedFrame(const nav_msgs::Odometry& message);
   std::optional<Stamp> latestStamp() const;
   void retryObjects();
@@ -72,6 +74,7 @@ class SlamNode {
   // Services, timers and diagnostics, in a spinner thread.
   bool finishSubmap(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void expectAt(const geometry_msgs::PoseWithCovarianceStamped& message);
   bool saveMap(SaveMap::Request& request, SaveMap::Response& response);
   bool loadMap(LoadMap::Request& request, LoadMap::Response& response);
   bool setMode(SetMode::Request& request, SetMode::Response& response);
@@ -90,6 +93,8 @@ class SlamNode {
   std::unique_ptr<Slam> slam_;
   SlamPublisher publisher_;
   TimeJumpGuard jump_;
+  bool is_localization_wanted_ = false;
+  bool is_loaded_ = false;  ///< the map is from a file, and no odometry has come since
   std::deque<WaitingObjects> waiting_objects_;
   EstimatorStatus estimator_;
 
@@ -111,6 +116,7 @@ class SlamNode {
   InputQueue queue_;
   ros::Subscriber odometry_subscriber_;
   ros::Subscriber objects_subscriber_;
+  ros::Subscriber initial_pose_subscriber_;
   std::vector<ros::ServiceServer> services_;
   ros::WallTimer slow_timer_;
   std::unique_ptr<NodeDiagnostics> diagnostics_;

@@ -45,6 +45,10 @@ SlamConfig defaultsOf(Method method);
 
 void describe(SlamConfig& config, Fields& fields);
 
+/// True if `next` may be the odometry after `last` of the same drive: later, but at most a minute, and no further than
+/// a fast car comes meanwhile.
+bool goesOn(const StampedPose& last, const StampedPose& next);
+
 /// The estimator: odometry and detections in, trajectory and map out. Single-threaded; the same input gives the same
 /// result whatever the order in which odometry and detections arrive.
 class Slam {
@@ -77,6 +81,9 @@ class Slam {
   /// T_map_base at the newest odometry sample; empty before the first.
   std::optional<StampedPose> latestPose() const;
 
+  /// The newest odometry of the present session as it came in, T_odom_base; empty before the first.
+  std::optional<StampedPose> latestOdometry() const;
+
   /// The newest frame that found its odometry; empty before the first.
   const std::optional<Frame>& latestFrame() const { return latest_frame_; }
 
@@ -91,8 +98,8 @@ class Slam {
   /// waits until it is found.
   void resumeMapping();
 
-  /// The odometry that comes now has nothing to do with the one before, neither its frame nor its stamps: the vehicle is
-  /// lost until it finds itself in the map. Without any finished submap it just begins to map.
+  /// The odometry that comes now has nothing to do with the one before, neither its frame nor its stamps: the vehicle
+  /// is lost until it finds itself in the map. Without any finished submap it just begins to map.
   void beginSession();
 
   /// Where the base is in the map, from outside, within about `stddev_m`: ends being lost. Has no effect while mapping

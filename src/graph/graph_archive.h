@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+#include "graph_state.h"
+#include "loop_review.h"
+
+namespace semantic_mht_slam {
+
+/// Odometry as it was added, to begin the sums over it again.
+struct OdometryStep {
+  Pose T_previous_submap;
+  PoseCov cov;
+
+  void transfer(StateArchive& archive) { archive(T_previous_submap, cov); }
+};
+
+/// Everything that was added to a graph, with the estimate and what was decided of loop closures. Throws InputError if
+/// it was written with other sizes of windows or chunks.
+void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::vector<OdometryStep>& odometry,
+                   GraphState& graph, LoopReview& review);
+
+}  // namespace semantic_mht_slam
