@@ -159,7 +159,7 @@ void SlamNode::startAgain() {
 
 void SlamNode::handle(const SemanticObjectArray& message) {
   waiting_objects_.push_back({message, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});
-  if (!jump_.isHolding()) retryObjects();
+  if (!jump_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
 }
 
 void SlamNode::retryObjects() {
