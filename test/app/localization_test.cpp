@@ -162,5 +162,36 @@ TEST(LocalizationTest, LostVehiclesFindThemselvesInTheMapOfKitti00) {
   EXPECT_LE(median(errors_m), 0.5);
 }
 
+TEST(SnapshotTest, GoingOnWithKitti00EqualsNeverHavingStopped) {
+  const auto folder = kittiFolder("00");
+  if (!folder) GTEST_SKIP() << "no KITTI data";
+  const SystemConfig config = loadSystemConfig(packageConfigFile("kitti.yaml"), {});
+  const ClassTable classes = loadClassTable(config, "");
+  DatasetFiles files;
+  files.folder = *folder;
+  const Recording recording = toRecording(readDataset(files, classes));
+  const auto feed = [&](Slam& slam, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      slam.addOdometry(recording.odometry[i]);
+      slam.addDetections(recording.odometry[i].stamp, recording.detector_frames[i].detections);
+    }
+  };
+  const std::size_t count = recording.odometry.size();
+  Slam whole(config.slam, classes);
+  feed(whole, 0, count);
+  whole.finish();
+  Slam first(config.slam, classes);
+  feed(first, 0, count / 2);
+  Slam second(config.slam, classes, first.snapshot());
+  feed(second, count / 2, count);
+  second.finish();
+  const std::vector<StampedPose> expected = whole.trajectory();
+  const std::vector<StampedPose> trajectory = second.trajectory();
+  ASSERT_EQ(trajectory.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_EQ(trajectory[i].T_world_base.matrix(), expected[i].T_world_base.matrix()) << i;
+  }
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam
