@@ -21,6 +21,12 @@ constexpr double kTrack_m = 200.0;
 constexpr double kWrongPlace_m = 5.0;
 constexpr std::size_t kPlaces = 20;
 
+SystemConfig kittiConfig() {
+  SystemConfig config = loadSystemConfig(packageConfigFile("kitti.yaml"), {});
+  config.slam = loadableSlamConfig(config, "");
+  return config;
+}
+
 /// What became of one start.
 struct Trial {
   bool is_found = false;
@@ -33,7 +39,7 @@ struct Trial {
 class Revisits {
  public:
   explicit Revisits(const std::string& folder)
-      : config_(loadSystemConfig(packageConfigFile("kitti.yaml"), {})),
+      : config_(kittiConfig()),
         classes_(loadClassTable(config_, "")),
         recording_(toRecording(readDataset(filesOf(folder), classes_))),
         split_(static_cast<std::size_t>(kMapShare * static_cast<double>(recording_.odometry.size()))) {
@@ -165,7 +171,7 @@ TEST(LocalizationTest, LostVehiclesFindThemselvesInTheMapOfKitti00) {
 TEST(SnapshotTest, GoingOnWithKitti00EqualsNeverHavingStopped) {
   const auto folder = kittiFolder("00");
   if (!folder) GTEST_SKIP() << "no KITTI data";
-  const SystemConfig config = loadSystemConfig(packageConfigFile("kitti.yaml"), {});
+  const SystemConfig config = kittiConfig();
   const ClassTable classes = loadClassTable(config, "");
   DatasetFiles files;
   files.folder = *folder;
