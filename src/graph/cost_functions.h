@@ -88,7 +88,8 @@ class PointCost final : public ceres::SizedCostFunction<kDim, (kDim == 2 ? 3 : 7
 
   PointCost(const Point& measured_m, const Matrix& information)
       : measured_m_(measured_m), sqrt_info_(squareRootInformation(information)) {}
-  PointCost(const Point& measured_m, const SquareRoot<Matrix>& root) : measured_m_(measured_m), sqrt_info_(root.upper) {}
+  PointCost(const Point& measured_m, const SquareRoot<Matrix>& root)
+      : measured_m_(measured_m), sqrt_info_(root.upper) {}
 
   const Point& measured() const { return measured_m_; }
   const Matrix& squareRoot() const { return sqrt_info_; }

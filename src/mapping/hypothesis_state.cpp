@@ -90,8 +90,8 @@ void transfer(StateArchive& archive, PoseOffset& offset) {
 }
 
 void transfer(StateArchive& archive, TrackedLandmark& landmark) {
-  auto& [id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap, first_submap,
-         last_submap, updated_at_m, earlier, miss_likelihood, is_expected] = landmark;
+  auto& [id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap,
+         first_submap, last_submap, updated_at_m, earlier, miss_likelihood, is_expected] = landmark;
   archive(id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap);
   archive(first_submap, last_submap, updated_at_m, earlier, miss_likelihood, is_expected);
 }

@@ -32,8 +32,8 @@ using Command = std::pair<std::string, int (*)(const std::vector<std::string>&)>
 const std::vector<Command>& commands() {
   static const std::vector<Command> list = {{"trajectory", evaluateTrajectory}, {"association", evaluateAssociation},
                                             {"loops", evaluateLoops},           {"landmarks", evaluateLandmarks},
-                                             {"hypotheses", evaluateHypotheses}, {"alignment", evaluateAlignment},
-                                             {"benchmark", evaluateBenchmark}};
+                                            {"hypotheses", evaluateHypotheses}, {"alignment", evaluateAlignment},
+                                            {"benchmark", evaluateBenchmark}};
   return list;
 }
 

@@ -110,9 +110,9 @@ int run(int argc, char** argv) {
       recording, slam_config, classes, [&](std::size_t done, std::size_t all) { progress(done, all); },
       map ? &map->state : nullptr);
   writeResultFiles(output.staging(), recording, result, config, classes);
-  const std::size_t map_bytes = writeMapFile(
-      output.staging() + "/map.bag", {result.state, result.landmarks, result.whole_trajectory, result.submaps}, config,
-      classes);
+  const std::size_t map_bytes =
+      writeMapFile(output.staging() + "/map.bag",
+                   {result.state, result.landmarks, result.whole_trajectory, result.submaps}, config, classes);
   const std::optional<TrajectoryError> error = scoreRun(recording, result.trajectory);
   writeReport(output.staging(), result, error, config, map_bytes);
   output.commit();

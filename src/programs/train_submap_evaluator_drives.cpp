@@ -1,9 +1,8 @@
 #include "train_submap_evaluator_drives.h"
 
-#include <memory>
-
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <set>
 
 #include "semantic_mht_slam/app/recording.h"

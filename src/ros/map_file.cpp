@@ -107,7 +107,8 @@ class MapReader {
   MapHeader readHeader(const rosbag::Bag& bag) const {
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kHeaderTopic}));
     require(view.size() == 1, std::string("is no map file: a bag ") +
-                                  (view.size() == 0 ? "without the topic " : "with several messages on ") + kHeaderTopic);
+                                  (view.size() == 0 ? "without the topic " : "with several messages on ") +
+                                  kHeaderTopic);
     return *instantiate<MapHeader>(*view.begin());
   }
 
@@ -116,9 +117,8 @@ class MapReader {
             "made by a newer program: format " + std::to_string(header.format_version) + ", this one reads up to " +
                 std::to_string(MapHeader::FORMAT));
     require(digestOf(header.config) == header.config_digest, "damaged: the digest of its parameters is wrong");
-    require(header.method == nameOf(config_.slam.method), "made with the method '" + header.method +
-                                                              "', the present one is '" + nameOf(config_.slam.method) +
-                                                              "'");
+    require(header.method == nameOf(config_.slam.method),
+            "made with the method '" + header.method + "', the present one is '" + nameOf(config_.slam.method) + "'");
     require(static_cast<int>(header.classes.size()) == classes_.size(),
             "made with " + std::to_string(header.classes.size()) + " classes, the present class table has " +
                 std::to_string(classes_.size()));
@@ -138,10 +138,10 @@ class MapReader {
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));
     for (const rosbag::MessageInstance& instance : view) {
       const auto section = instantiate<MapSection>(instance);
-      require(digestOf(section->data) == section->digest, "damaged: the digest of section '" + section->name +
-                                                              "' is wrong");
-      map.state.sections.push_back({section->name, static_cast<int>(section->version),
-                                    std::string(section->data.begin(), section->data.end())});
+      require(digestOf(section->data) == section->digest,
+              "damaged: the digest of section '" + section->name + "' is wrong");
+      map.state.sections.push_back(
+          {section->name, static_cast<int>(section->version), std::string(section->data.begin(), section->data.end())});
     }
     for (const std::string& name : header.sections) {
       require(std::any_of(map.state.sections.begin(), map.state.sections.end(),

@@ -75,8 +75,8 @@ void transfer(StateArchive& archive, SubmapFeatures& features) {
 }
 
 void transfer(StateArchive& archive, LoopClosureRecord& record) {
-  auto& [source, query_keyframe, match_keyframe, is_accepted, reason, score, place, inliers, T_match_query, cov, pairs] =
-      record;
+  auto& [source, query_keyframe, match_keyframe, is_accepted, reason, score, place, inliers, T_match_query, cov,
+         pairs] = record;
   auto& [histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob] = place;
   archive(source, query_keyframe, match_keyframe, is_accepted, reason, score, inliers, T_match_query);
   archive(histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob);

@@ -65,7 +65,8 @@ void Slam::transferInput(StateArchive& archive) {
   bool is_localizing = localizer_.has_value();
   archive(is_localizing);
   if (archive.isReading() && is_localizing) localizer_.emplace(localizer_config_);
-  if (sessions_.empty() || sessions_.back().first_odometry > odometry_.size()) StateArchive::fail("sessions of no odometry");
+  if (sessions_.empty() || sessions_.back().first_odometry > odometry_.size())
+    StateArchive::fail("sessions of no odometry");
 }
 
 void Slam::transferSubmaps(StateArchive& archive) {

@@ -14,7 +14,8 @@ namespace {
 /// A map of one round, and a second session in an odometry frame of its own.
 class LocalizerTest : public testing::TestWithParam<int> {
  protected:
-  LocalizerTest() : drive_(static_cast<std::uint64_t>(GetParam())), slam_(defaultsOf(Method::kDpmhm), makeStreetClasses()) {
+  LocalizerTest()
+      : drive_(static_cast<std::uint64_t>(GetParam())), slam_(defaultsOf(Method::kDpmhm), makeStreetClasses()) {
     drive_.feed(slam_, 0, 500);
     slam_.finish();
   }

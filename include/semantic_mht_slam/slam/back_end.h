@@ -62,8 +62,8 @@ class BackEnd {
   /// For a submap that begins at `T_odom_submap`.
   SubmapPrediction predict(const Pose& T_odom_submap) const;
 
-  /// Takes a finished submap with its keyframes and optimises; its alignment is in the frame of `prediction`. Returns the
-  /// landmarks that were found to be the same.
+  /// Takes a finished submap with its keyframes and optimises; its alignment is in the frame of `prediction`. Returns
+  /// the landmarks that were found to be the same.
   std::vector<MergedLandmark> add(std::vector<MapKeyframe> keyframes, const Submap& submap,
                                   const SubmapPrediction& prediction);
 
@@ -128,9 +128,9 @@ class BackEnd {
   KeyframeMap map_;
   std::vector<SubmapCheck> checks_;
   std::vector<LoopClosureRecord> closures_;
-  std::vector<int> closure_of_loop_;  ///< index into `closures_`, by loop of the graph
+  std::vector<int> closure_of_loop_;      ///< index into `closures_`, by loop of the graph
   std::optional<Pose> T_map_odom_start_;  ///< of a session that has no keyframe yet
-  double closed_at_m_ = 0.0;          ///< distance driven at the last accepted closure
+  double closed_at_m_ = 0.0;              ///< distance driven at the last accepted closure
   std::map<LandmarkId, LandmarkId> survivor_of_;
   std::map<LandmarkId, std::set<int>> keyframes_of_;  ///< that saw a landmark of the graph
   std::vector<MergedLandmark> newly_merged_;

@@ -30,9 +30,9 @@ struct MapFix {
   Pose T_map_base;
 };
 
-/// Finds the vehicle in a finished map and follows it, without changing the map. While it is lost, what was seen over the
-/// last metres is looked for among all keyframes by its objects alone (`BackEnd::locate`); the pose is believed once two
-/// finds, some metres apart, agree. From then on the same scene is laid onto the map near the expected pose
+/// Finds the vehicle in a finished map and follows it, without changing the map. While it is lost, what was seen over
+/// the last metres is looked for among all keyframes by its objects alone (`BackEnd::locate`); the pose is believed
+/// once two finds, some metres apart, agree. From then on the same scene is laid onto the map near the expected pose
 /// (`findInMap`). Without success for `lost_after_m` it is lost again.
 class Localizer {
  public:
