@@ -14,8 +14,9 @@
 namespace semantic_mht_slam {
 namespace {
 
-ClassTable kittiClasses() {
-  return readClassTable(packageConfigFile("classes_semantic_kitti.yaml"));
+const ClassTable& kittiClasses() {
+  static const ClassTable kTable = readClassTable(packageConfigFile("classes_semantic_kitti.yaml"));
+  return kTable;
 }
 
 SimulatedDrive simulate(const std::string& scenario_file, double length_m, std::uint64_t seed) {
@@ -35,6 +36,8 @@ Recording toRecording(const SimulatedDrive& drive) {
     recording.odometry.push_back({drive.stamps[i], drive.T_odom_base[i]});
     recording.ground_truth.push_back({drive.stamps[i], drive.T_map_base[i]});
     recording.detector_frames.push_back({drive.stamps[i], drive.detections[i]});
+    Detections& detections = recording.detector_frames.back().detections;
+    for (std::size_t row = 0; row < detections.size(); ++row) detections[row].row = static_cast<int>(row);
   }
   return recording;
 }
@@ -119,7 +122,7 @@ TEST_P(KittiSlamTest, TheErrorIsBelowTheBarAndNoClosureIsWrong) {
   const Recording recording = toRecording(
       readDataset({*folder, objects, std::string("odometry/") + GetParam().odometry + ".txt"}, kittiClasses()));
   const SystemConfig config = loadSystemConfig(packageConfigFile("kitti.yaml"), {});
-  const RunResult result = run(recording, config.slam);
+  const RunResult result = run(recording, loadableSlamConfig(config, ""));
   EXPECT_LT(se3Error(recording, result.trajectory), GetParam().bar_m);
   for (const LoopClosureResult& closure : result.loop_closures) {
     if (!closure.record.is_accepted) continue;

@@ -143,6 +143,7 @@ TEST(PlaceClosingTest, ThePapersChainGivesEveryScoreAndClosesNothingWrong) {
   SlamConfig config = defaultsOf(Method::kDpmhm);
   config.back_end.place.chain = PlaceChain::kPaper;
   config.back_end.revisit.enabled = false;
+  config.mapper.alignment.enabled = false;
   const RunResult result = run(drive, config);
   EXPECT_EQ(scoreOf(drive, result).wrong, 0);
   ASSERT_FALSE(result.loop_closures.empty());
@@ -160,6 +161,7 @@ TEST(PlaceClosingTest, SubmapsThatTheTreeSkipsAreNotSearchedAndAreTold) {
   SystemConfig config;
   config.slam.back_end.evaluator.check_all = false;
   config.slam.back_end.revisit.enabled = false;
+  config.slam.mapper.alignment.enabled = false;
   const RunResult result = run(drive, loadableSlamConfig(config, ""));
   ASSERT_EQ(result.submap_checks.size(), result.submaps);
   const auto skipped = std::count_if(result.submap_checks.begin(), result.submap_checks.end(),
