@@ -1,5 +1,3 @@
-#include <cstdio>
-#include <cstring>
 #include <string>
 
 #include <geometry_msgs/PoseStamped.h>
@@ -61,12 +59,7 @@ class OdometryRelay {
 };
 
 int run(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
-      std::fputs(kHelp, stdout);
-      return 0;
-    }
-  }
+  if (printedHelp(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "odometry_relay");
   const OdometryRelay relay;
   ros::spin();

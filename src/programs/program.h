@@ -59,4 +59,15 @@ inline bool parseOrHelp(const std::vector<std::string>& arguments, const std::st
   return !is_help;
 }
 
+/// For a node, whose other arguments are those of ROS: prints `help` if --help or -h is among them. True if it was.
+inline bool printedHelp(int argc, char** argv, const char* help) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument != "--help" && argument != "-h") continue;
+    std::cout << help;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace semantic_mht_slam

@@ -1,6 +1,3 @@
-#include <cstdio>
-#include <cstring>
-
 #include <ros/ros.h>
 
 #include "semantic_mht_slam/ros/parameters.h"
@@ -18,12 +15,7 @@ constexpr char kHelp[] =
 
 int run(int argc, char** argv) {
   using namespace semantic_mht_slam;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
-      std::fputs(kHelp, stdout);
-      return 0;
-    }
-  }
+  if (printedHelp(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "segmentation");
   const ros::NodeHandle private_handle("~");  // the last handle that goes shuts logging down
   SegmentationNodeConfig config;

@@ -1,7 +1,5 @@
 #include "semantic_mht_slam/ros/slam_node.h"
 
-#include <cstdio>
-#include <cstring>
 #include <string>
 
 #include <ros/ros.h>
@@ -17,12 +15,7 @@ constexpr char kHelp[] =
 
 int run(int argc, char** argv) {
   using namespace semantic_mht_slam;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--help") == 0 || std::strcmp(argv[i], "-h") == 0) {
-      std::fputs(kHelp, stdout);
-      return 0;
-    }
-  }
+  if (printedHelp(argc, argv, kHelp)) return 0;
   ros::init(argc, argv, "slam_node");
   const ros::NodeHandle private_handle("~");  // the last handle that goes shuts logging down
   const auto node = makeSlamNode(ros::NodeHandle(), private_handle, "");
