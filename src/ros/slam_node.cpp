@@ -163,11 +163,13 @@ void SlamNode::handle(const SemanticObjectArray& message) {
 }
 
 void SlamNode::retryObjects() {
-  // Objects wait for the transform of their sensor, in their order, and nothing waits for them.
+  // Objects wait, in their order, for the transform of their sensor, and where they overtook a jump back in time, for
+  // the odometry that tells of it. Nothing waits for them.
   while (!waiting_objects_.empty()) {
     const auto& [message, deadline] = waiting_objects_.front();
     const std::optional<Pose> T_base_sensor = sensors_.find(message.header.frame_id);
-    if (!T_base_sensor && ros::WallTime::now() < deadline) return;
+    const bool may_wait = ros::WallTime::now() < deadline;
+    if (may_wait && (!T_base_sensor || jump_.isBack(toStamp(message.header.stamp), latestStamp()))) return;
     if (T_base_sensor) {
       add(message, *T_base_sensor);
     } else {

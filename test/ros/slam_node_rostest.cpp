@@ -64,7 +64,7 @@ class SlamNodeTest : public ::testing::Test {
     return false;
   }
 
-  /// Plays a bag at ten times real time and waits until the trajectory ends at `last`.
+  /// Plays a bag at ten times real time and waits until trajectory and detector frames end at `last`.
   void play(const std::string& bag, Stamp last) {
     const std::string command =
         "rosbag play --quiet --clock --wait-for-subscribers --rate 10 --topics /objects "
@@ -72,9 +72,12 @@ class SlamNodeTest : public ::testing::Test {
         bag + "' > /dev/null";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20.0);
-    while (toStamp(trajectory_.header.stamp) != last && ros::WallTime::now() < deadline)
-      ros::WallDuration(0.05).sleep();
-    ASSERT_EQ(toStamp(trajectory_.header.stamp), last) << "the trajectory does not reach the end of the bag";
+    const auto isAtEnd = [&] {
+      return toStamp(trajectory_.header.stamp) == last && !trees_.empty() &&
+             toStamp(trees_.back().header.stamp) == last;
+    };
+    while (!isAtEnd() && ros::WallTime::now() < deadline) ros::WallDuration(0.05).sleep();
+    ASSERT_TRUE(isAtEnd()) << "the trajectory or the frames do not reach the end of the bag";
   }
 
   /// Ends the last submap, as the offline runner does, and waits for the trajectory that follows from it.
@@ -159,10 +162,12 @@ TEST_F(SlamNodeTest, ReplayedBagGivesTheOfflineTrajectoryAndALaterOneStartsAgain
   // The same bag again: the clock jumps back, the old trajectory is forgotten.
   trajectory_ = {};
   poses_.clear();
+  trees_.clear();
   play(bag, last);
   finishSubmap();
   expectTrajectory(expected);
   EXPECT_EQ(poses_.size(), kFrames);
+  EXPECT_EQ(trees_.size(), 1 + kFrames) << "the empty tree of the new map, and the frames";
 }
 
 TEST_F(SlamNodeTest, WrongInputIsNamedInAWarningAndOneWrongStampChangesNothing) {
@@ -189,6 +194,28 @@ TEST_F(SlamNodeTest, WrongInputIsNamedInAWarningAndOneWrongStampChangesNothing) 
   ros::WallDuration(0.5).sleep();
   EXPECT_EQ(toStamp(trajectory_.header.stamp), begin + 4 * kOrigin);
   EXPECT_GE(trajectory_.poses.size(), 41U);
+}
+
+TEST_F(SlamNodeTest, ObjectsThatOvertakeTheOdometryOfAJumpBelongToTheNewMap) {
+  ros::Publisher odometry = handle_.advertise<nav_msgs::Odometry>("odometry", 100);
+  ros::Publisher objects = handle_.advertise<SemanticObjectArray>("objects", 100);
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10.0);
+  while ((odometry.getNumSubscribers() == 0 || objects.getNumSubscribers() == 0) && ros::WallTime::now() < deadline) {
+    ros::WallDuration(0.05).sleep();
+  }
+  const auto publish = [&](Stamp stamp) {
+    odometry.publish(toOdometry({stamp, Pose::identity()}, "odom", "base_link"));
+    ros::WallDuration(0.02).sleep();
+  };
+  for (int i = 0; i < 10; ++i) publish(100 * kOrigin + i * kOrigin / 10);
+  trees_.clear();
+  const Stamp begin = 20 * kOrigin;
+  objects.publish(toMessage(begin, "base_link", {}, makeTwoClasses()));
+  ros::WallDuration(0.2).sleep();  // the node has read the objects before the first odometry of the new time
+  for (int i = 0; i < 10; ++i) publish(begin + i * kOrigin / 10);
+  ros::WallDuration(0.5).sleep();
+  ASSERT_EQ(trees_.size(), 2U) << "the empty tree of the new map, and the frame";
+  EXPECT_EQ(toStamp(trees_.back().header.stamp), begin);
 }
 
 /// Runs a second node with one wrong parameter and returns its exit code.

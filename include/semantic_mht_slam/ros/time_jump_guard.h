@@ -18,9 +18,12 @@ class TimeJumpGuard {
   /// Falling back by more than `back` is a jump back.
   explicit TimeJumpGuard(Stamp back) : back_(back) {}
 
+  /// True for a stamp that falls back: time jumped, or the stamp is wrong.
+  bool isBack(Stamp stamp, const std::optional<Stamp>& latest) const { return latest && stamp < *latest - back_; }
+
   /// True for a message that jumps while none is held.
   bool isUnconfirmed(Stamp stamp, const std::optional<Stamp>& latest) const {
-    return latest && !held_ && (stamp < *latest - back_ || stamp > *latest + kAhead);
+    return !held_ && (isBack(stamp, latest) || (latest && stamp > *latest + kAhead));
   }
 
   void hold(const nav_msgs::Odometry& message) { held_ = message; }
