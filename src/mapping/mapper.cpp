@@ -175,19 +175,8 @@ void Mapper::joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& sub
   const std::optional<MapConclusion> conclusion = tree_.mapBranching().conclude(tree_.leaves());
   if (!conclusion) return;
   submap.alignment = conclusion->alignment;
-  for (const MergedLandmark& merged : conclusion->merged) {
-    const auto found = std::find_if(landmarks.begin(), landmarks.end(),
-                                    [&](const MixtureLandmark& landmark) { return landmark.id == merged.merged; });
-    if (found == landmarks.end()) continue;  // was merged into another landmark of the submap
-    const MixtureLandmark& earlier = tree_.mapBranching().landmark(merged.survivor);
-    found->id = earlier.id;
-    found->observations += earlier.observations;
-    found->first_submap = std::min(found->first_submap, earlier.first_submap);
-    found->existence_prob = std::max(found->existence_prob, earlier.existence_prob);
-    submap.merged.push_back(merged);
-  }
-  std::sort(landmarks.begin(), landmarks.end(),
-            [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
+  const auto earlier = [this](LandmarkId id) -> const MixtureLandmark& { return tree_.mapBranching().landmark(id); };
+  joinEarlierLandmarks(conclusion->merged, earlier, landmarks, submap.merged);
 }
 
 std::optional<Submap> Mapper::finish() {

@@ -53,9 +53,9 @@ void describe(TreeConfig& config, Fields& fields) {
 
 void describe(SubmapConfig& config, Fields& fields) {
   fields.add("length", config.length_m, "m", {1.0, 1000.0}, "Travelled length of a submap.");
-  fields.add("odometry_stddev", config.odometry_stddev_m, "m/sqrt(m)", {0.0, 10.0},
+  fields.add("odometry_stddev", config.odometry_stddev_m, "m/sqrt(m)", {1e-4, 10.0},
              "Growth of the odometry's position error with the square root of the distance.");
-  fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {0.0, 1.0},
+  fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {1e-6, 1.0},
              "Growth of the odometry's heading error with the square root of the distance.");
   fields.add("correct_pose", config.correct_pose,
              "Whether each hypothesis corrects the odometry within the submap by its landmarks (the paper: false).");

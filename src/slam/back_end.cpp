@@ -20,6 +20,13 @@ PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_a_b, double tilt_stdde
   return 0.5 * (result + result.transpose());
 }
 
+PoseCov poseCov(double stddev_m, double stddev_rad) {
+  PoseCov cov = PoseCov::Zero();
+  cov.diagonal().head<3>().setConstant(stddev_m * stddev_m);
+  cov.diagonal().tail<3>().setConstant(stddev_rad * stddev_rad);
+  return cov;
+}
+
 LoopClosureRecord toRecord(PlaceMatch match, const std::vector<int>& keyframe_of_place) {
   LoopClosureRecord record;
   record.source = ClosureSource::kPlace;
@@ -57,8 +64,9 @@ void describe(BackEndConfig& config, Fields& fields) {
   fields.group("graph", config.graph);
 }
 
-BackEnd::BackEnd(const BackEndConfig& config, const ClassTable& classes)
+BackEnd::BackEnd(const BackEndConfig& config, const OdometryNoise& odometry, const ClassTable& classes)
     : config_(config),
+      odometry_noise_(odometry),
       classes_(classes),
       graph_(config.graph),
       evaluator_(makeSubmapEvaluator(config.evaluator, config.evaluator.tree, classes.size())),
@@ -90,28 +98,21 @@ void BackEnd::addNode(const MapKeyframe& keyframe) {
   const int index = graph_.submaps();
   if (index == 0) {
     node.T_previous_submap = keyframe.T_odom_base;
+  } else if (T_map_odom_start_) {
+    node.T_previous_submap = map_.T_map_keyframe.back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
+    node.odometry_cov = poseCov(kSessionStddev_m, kSessionStddev_rad);
+    T_map_odom_start_.reset();
   } else {
     const MapKeyframe& previous = map_.keyframes.back();
     node.T_previous_submap = previous.T_odom_base.inverse() * keyframe.T_odom_base;
     const double distance_m = std::max(0.1, keyframe.driven_m - previous.driven_m);
-    const KeyframeConfig& noise = config_.keyframe;
-    node.odometry_cov.setZero();
-    node.odometry_cov.diagonal().head<3>().setConstant(distance_m * noise.odometry_stddev_m * noise.odometry_stddev_m);
-    node.odometry_cov.diagonal().tail<3>().setConstant(distance_m * noise.odometry_stddev_rad *
-                                                       noise.odometry_stddev_rad);
-  }
-  if (T_map_odom_start_ && index > 0) {
-    node.T_previous_submap = map_.T_map_keyframe.back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
-    node.odometry_cov.setZero();
-    node.odometry_cov.diagonal().head<3>().setConstant(kSessionStddev_m * kSessionStddev_m);
-    node.odometry_cov.diagonal().tail<3>().setConstant(kSessionStddev_rad * kSessionStddev_rad);
-    T_map_odom_start_.reset();
+    node.odometry_cov = distance_m * poseCov(odometry_noise_.stddev_m, odometry_noise_.stddev_rad);
   }
   std::set<LandmarkId> taken;
   for (const KeyframeSighting& sighting : keyframe.sightings) {
     const ClassInfo& info = classes_[sighting.class_index];
     if (!config_.landmark_factors || !info.is_static || info.transition != Transition::kDirac) continue;
-    const LandmarkId id = resolve(sighting.landmark);
+    const LandmarkId id = merged_ids_.resolve(sighting.landmark);
     if (!taken.insert(id).second) continue;
     keyframes_of_[id].insert(index);
     node.sightings.push_back({static_cast<std::int64_t>(id), sighting.position_m, sighting.cov_m2});
@@ -222,8 +223,8 @@ void BackEnd::accept(const LoopClosureRecord& record) {
 }
 
 bool BackEnd::mergeLandmarks(LandmarkId merged, LandmarkId survivor) {
-  merged = resolve(merged);
-  survivor = resolve(survivor);
+  merged = merged_ids_.resolve(merged);
+  survivor = merged_ids_.resolve(survivor);
   if (merged == survivor) return false;
   const auto a = keyframes_of_.find(merged);
   const auto b = keyframes_of_.find(survivor);
@@ -234,7 +235,7 @@ bool BackEnd::mergeLandmarks(LandmarkId merged, LandmarkId survivor) {
   graph_.mergeLandmarks(static_cast<std::int64_t>(merged), static_cast<std::int64_t>(survivor));
   b->second.insert(a->second.begin(), a->second.end());
   keyframes_of_.erase(a);
-  survivor_of_[merged] = survivor;
+  merged_ids_.merge(merged, survivor);
   newly_merged_.push_back({merged, survivor});
   return true;
 }
@@ -256,11 +257,6 @@ void BackEnd::finish() {
   }
 }
 
-LandmarkId BackEnd::resolve(LandmarkId id) const {
-  for (auto it = survivor_of_.find(id); it != survivor_of_.end(); it = survivor_of_.find(id)) id = it->second;
-  return id;
-}
-
 void BackEnd::goOnAt(const Pose& T_map_odom, double driven_m) {
   T_map_odom_start_ = T_map_odom;
   closed_at_m_ = driven_m;
@@ -279,7 +275,7 @@ Pose BackEnd::T_map_submap(int submap) const {
 }
 
 std::optional<Eigen::Vector3d> BackEnd::landmark(LandmarkId id) const {
-  return graph_.landmark(static_cast<std::int64_t>(resolve(id)));
+  return graph_.landmark(static_cast<std::int64_t>(merged_ids_.resolve(id)));
 }
 
 }  // namespace semantic_mht_slam

@@ -85,7 +85,7 @@ void transfer(StateArchive& archive, LoopClosureRecord& record) {
 
 void BackEnd::transferKeyframes(StateArchive& archive, const SubmapArchive& submaps) {
   archive(map_.keyframes, map_.T_map_keyframe, keyframe_of_place_, checks_);
-  archive(closures_, closure_of_loop_, closed_at_m_, T_map_odom_start_, survivor_of_, keyframes_of_);
+  archive(closures_, closure_of_loop_, closed_at_m_, T_map_odom_start_, merged_ids_, keyframes_of_);
   const std::size_t count = map_.keyframes.size();
   if (map_.T_map_keyframe.size() != count) StateArchive::fail("a keyframe without a pose");
   for (const int keyframe : keyframe_of_place_) requireIndex(keyframe, count);

@@ -6,6 +6,8 @@
 
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/map/merged_ids.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -24,12 +26,10 @@ class KeptLandmarks {
     for (const MixtureLandmark& landmark : submap.landmarks) {
       if (landmark.existence_prob >= keep_prob) by_id_[landmark.id] = &landmark;
     }
-    std::map<LandmarkId, LandmarkId> survivor_of;
-    for (const auto& [merged, survivor] : submap.merged) survivor_of[merged] = survivor;
+    MergedIds merged_ids;
+    for (const auto& [merged, survivor] : submap.merged) merged_ids.merge(merged, survivor);
     for (const DetectionAssociation& association : submap.associations) {
-      LandmarkId id = association.landmark;
-      for (auto it = survivor_of.find(id); it != survivor_of.end(); it = survivor_of.find(id)) id = it->second;
-      const auto found = by_id_.find(id);
+      const auto found = by_id_.find(merged_ids.resolve(association.landmark));
       if (found != by_id_.end()) of_detection_[{association.frame, association.row}] = found->second;
     }
   }
@@ -48,18 +48,19 @@ class KeptLandmarks {
 /// Collects what one keyframe sees.
 class SightingCollector {
  public:
-  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const KeyframeConfig& config)
+  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const SightingNoise& noise,
+                    const KeyframeConfig& config)
       : T_keyframe_odom_(T_odom_keyframe.inverse()),
         T_keyframe_submap_(T_keyframe_odom_ * T_odom_submap),
+        noise_(noise),
         config_(config) {}
 
-  void add(const MixtureLandmark& landmark, const Pose& T_odom_base, double distance_m, const Detection& detection,
-           const Eigen::Matrix3d& detector_cov) {
+  void add(const MixtureLandmark& landmark, const Pose& T_odom_base, double distance_m, const Detection& detection) {
     const Pose T_keyframe_base = T_keyframe_odom_ * T_odom_base;
     const Eigen::Matrix3d R = T_keyframe_base.rotation.toRotationMatrix();
-    const double lever_m = detection.position_m.norm() * config_.odometry_stddev_rad;
-    const double drift_m2 = distance_m * (config_.odometry_stddev_m * config_.odometry_stddev_m + lever_m * lever_m);
-    const Eigen::Matrix3d cov = R * detector_cov * R.transpose() + drift_m2 * Eigen::Matrix3d::Identity();
+    const double lever_m = detection.position_m.norm() * noise_.odometry.stddev_rad;
+    const double drift_m2 = distance_m * (noise_.odometry.stddev_m * noise_.odometry.stddev_m + lever_m * lever_m);
+    const Eigen::Matrix3d cov = R * noise_.detector(detection) * R.transpose() + drift_m2 * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d information = cov.inverse();
     WeightedSum& sum = sums_[landmark.id];
     sum.landmark = &landmark;
@@ -85,6 +86,7 @@ class SightingCollector {
  private:
   Pose T_keyframe_odom_;
   Pose T_keyframe_submap_;
+  const SightingNoise& noise_;
   const KeyframeConfig& config_;
   std::map<LandmarkId, WeightedSum> sums_;
 };
@@ -97,10 +99,6 @@ void describe(KeyframeConfig& config, Fields& fields) {
              "Deviation of a landmark's position in a keyframe that more detections do not lower.");
   fields.add("vertical_floor", config.vertical_floor_m, "m", {0.001, 100.0},
              "The same for its height: of trunks and poles a sensor sees another part from each distance.");
-  fields.add("odometry_stddev", config.odometry_stddev_m, "m/sqrt(m)", {1e-4, 10.0},
-             "Growth of the odometry's position error with the square root of the distance.");
-  fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {1e-6, 1.0},
-             "Growth of the odometry's rotation error with the square root of the distance.");
 }
 
 SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_submap, double floor_m) {
@@ -112,7 +110,7 @@ SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_
 }
 
 std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m,
-                                          double keep_prob, const DetectionCov& cov, const KeyframeConfig& config) {
+                                          double keep_prob, const SightingNoise& noise, const KeyframeConfig& config) {
   const KeptLandmarks landmarks(submap, keep_prob);
   std::vector<MapKeyframe> keyframes;
   std::optional<SightingCollector> collector;
@@ -122,13 +120,13 @@ std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vecto
     if (keyframes.empty() || driven_m - keyframes.back().driven_m >= config.spacing_m) {
       if (collector) collector->writeTo(keyframes.back());
       keyframes.push_back({frame.index, frame.stamp, driven_m, frame.T_odom_base, {}, {}});
-      collector.emplace(frame.T_odom_base, submap.T_odom_submap, config);
+      collector.emplace(frame.T_odom_base, submap.T_odom_submap, noise, config);
     }
     for (const Detection& detection : frame.detections) {
       const MixtureLandmark* landmark = landmarks.of(frame.index, detection.row);
       if (landmark == nullptr) continue;
       const double distance_m = driven_m - keyframes.back().driven_m;
-      collector->add(*landmark, frame.T_odom_base, distance_m, detection, cov(detection));
+      collector->add(*landmark, frame.T_odom_base, distance_m, detection);
     }
   }
   if (collector) collector->writeTo(keyframes.back());

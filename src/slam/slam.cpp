@@ -45,13 +45,14 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
     : method_(config.method),
       assembler_(config.input),
       rng_(config.seed),
+      odometry_noise_{config.mapper.submap.odometry_stddev_m, config.mapper.submap.odometry_stddev_rad},
       keyframe_config_(config.back_end.keyframe),
       keep_prob_(config.mapper.detection.keep_prob),
       map_(config.mapper.detection.keep_prob),
       localizer_config_(config.localization) {
   if (config.method == Method::kOdometry) return;
   mapper_.emplace(config.mapper, classes);
-  back_end_.emplace(config.back_end, classes);
+  back_end_.emplace(config.back_end, odometry_noise_, classes);
   const SubmapConfig& submap = config.mapper.submap;  // what is within its propagation is carried on by the mapper
   const double earlier_m = std::max(config.back_end.revisit.min_driven_m, submap.propagation_m);
   earlier_after_submaps_ = static_cast<int>(earlier_m / submap.length_m) + 2;
@@ -96,8 +97,9 @@ void Slam::take(Submap submap) {
   for (Frame& frame : submap_frames_) {
     for (Detection& detection : frame.detections) detection = mapper_->corrected(detection);
   }
-  const DetectionCov cov = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
-  auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, cov, keyframe_config_);
+  const auto detector = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
+  auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, {odometry_noise_, detector},
+                                    keyframe_config_);
   submap_frames_.clear();
   const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap, prediction_);
   prediction_ = std::move(next_prediction_);

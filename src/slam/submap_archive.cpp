@@ -28,6 +28,7 @@ void SubmapArchive::add(std::shared_ptr<const Submap> submap) {
   }
   for (const auto& [merged, survivor] : submap->merged) {
     // What the mapper merged, it has already put together in the survivor.
+    if (resolve(merged) == resolve(survivor)) continue;
     landmarks_.erase(resolve(merged));
     merge(merged, survivor);
   }
@@ -37,8 +38,7 @@ void SubmapArchive::add(std::shared_ptr<const Submap> submap) {
 void SubmapArchive::merge(LandmarkId merged, LandmarkId survivor) {
   merged = resolve(merged);
   survivor = resolve(survivor);
-  if (merged == survivor) return;
-  survivor_of_[merged] = survivor;
+  if (!merged_ids_.merge(merged, survivor)) return;
   const auto gone = landmarks_.find(merged);
   if (gone == landmarks_.end()) return;
   const auto kept = landmarks_.find(survivor);
@@ -58,7 +58,7 @@ void SubmapArchive::merge(LandmarkId merged, LandmarkId survivor) {
 
 std::vector<MixtureLandmark> SubmapArchive::landmarks(const std::function<Pose(int)>& T_map_submap) const {
   std::map<LandmarkId, std::vector<LandmarkId>> merged_into;
-  for (const auto& [merged, survivor] : survivor_of_) merged_into[resolve(survivor)].push_back(merged);
+  for (const auto& [merged, survivor] : merged_ids_.survivors()) merged_into[resolve(survivor)].push_back(merged);
   std::vector<MixtureLandmark> result;
   for (const auto& [id, entry] : landmarks_) {
     if (!isKept(id)) continue;
@@ -66,15 +66,6 @@ std::vector<MixtureLandmark> SubmapArchive::landmarks(const std::function<Pose(i
     result.back().merged_ids = merged_into[id];
   }
   return result;
-}
-
-LandmarkId SubmapArchive::resolve(LandmarkId id) const {
-  auto found = survivor_of_.find(id);
-  while (found != survivor_of_.end()) {
-    id = found->second;
-    found = survivor_of_.find(id);
-  }
-  return id;
 }
 
 bool SubmapArchive::isKept(LandmarkId id) const {

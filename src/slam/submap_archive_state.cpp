@@ -58,7 +58,7 @@ void SubmapArchive::transfer(StateArchive& archive) {
     for (Submap& submap : submaps) submaps_.push_back(std::make_shared<const Submap>(std::move(submap)));
   }
   transferEntries(archive);
-  archive(survivor_of_);
+  archive(merged_ids_);
 }
 
 }  // namespace semantic_mht_slam

@@ -49,7 +49,8 @@ struct Drive {
 
 TEST(KeyframesTest, ASubmapIsCutByTheDistanceDriven) {
   const Drive drive;
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 50.0, 0.5, noise, drive.config);
+  const auto keyframes =
+      cutIntoKeyframes(drive.submap, drive.frames, 50.0, 0.5, {OdometryNoise{}, noise}, drive.config);
   ASSERT_EQ(keyframes.size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(keyframes[k].frame, 100 + 4 * k);
@@ -59,7 +60,7 @@ TEST(KeyframesTest, ASubmapIsCutByTheDistanceDriven) {
 
 TEST(KeyframesTest, ASightingIsTheMeanOfItsDetectionsInTheKeyframe) {
   const Drive drive;
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, noise, drive.config);
+  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, {OdometryNoise{}, noise}, drive.config);
   ASSERT_EQ(keyframes[1].sightings.size(), 1U) << "what hardly exists is not a landmark";
   const KeyframeSighting& sighting = keyframes[1].sightings[0];
   EXPECT_EQ(sighting.landmark, 1U);
@@ -73,7 +74,7 @@ TEST(KeyframesTest, ASightingIsTheMeanOfItsDetectionsInTheKeyframe) {
 
 TEST(KeyframesTest, TheSceneHoldsTheFusedPositions) {
   const Drive drive;
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, noise, drive.config);
+  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, {OdometryNoise{}, noise}, drive.config);
   ASSERT_EQ(keyframes[2].scene.objects.size(), 1U);
   EXPECT_LT((keyframes[2].scene.objects[0].position_m - Eigen::Vector3d(12.0, 3.0, 1.0)).norm(), 1e-12);
   EXPECT_EQ(keyframes[2].scene.objects[0].landmark, 1U);
@@ -83,7 +84,7 @@ TEST(KeyframesTest, DetectionsOfAMergedLandmarkBelongToTheSurvivor) {
   Drive drive;
   drive.submap.merged = {{2, 1}};
   drive.submap.landmarks.pop_back();
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, noise, drive.config);
+  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, {OdometryNoise{}, noise}, drive.config);
   ASSERT_EQ(keyframes[0].sightings.size(), 1U);
   EXPECT_EQ(keyframes[0].sightings[0].detections, 8);
 }

@@ -7,7 +7,9 @@
 
 #include "semantic_mht_slam/graph/pose_graph.h"
 #include "semantic_mht_slam/graph/trajectory_correction.h"
+#include "semantic_mht_slam/map/merged_ids.h"
 #include "semantic_mht_slam/map/submap.h"
+#include "semantic_mht_slam/models/odometry_noise.h"
 #include "semantic_mht_slam/place/place_recognizer.h"
 #include "semantic_mht_slam/place/submap_evaluator.h"
 #include "semantic_mht_slam/slam/keyframes.h"
@@ -57,7 +59,7 @@ struct SubmapCheck {
 class BackEnd {
  public:
   /// Throws InputError if the evaluator's tree is needed and cannot be used.
-  BackEnd(const BackEndConfig& config, const ClassTable& classes);
+  BackEnd(const BackEndConfig& config, const OdometryNoise& odometry, const ClassTable& classes);
 
   /// For a submap that begins at `T_odom_submap`.
   SubmapPrediction predict(const Pose& T_odom_submap) const;
@@ -116,10 +118,10 @@ class BackEnd {
   void accept(const LoopClosureRecord& record);
   bool mergeLandmarks(LandmarkId merged, LandmarkId survivor);
   void readBack();
-  LandmarkId resolve(LandmarkId id) const;
   int submapOf(int keyframe) const;
 
   BackEndConfig config_;
+  OdometryNoise odometry_noise_;
   ClassTable classes_;
   PoseGraph graph_;
   SubmapEvaluator evaluator_;
@@ -131,7 +133,7 @@ class BackEnd {
   std::vector<int> closure_of_loop_;      ///< index into `closures_`, by loop of the graph
   std::optional<Pose> T_map_odom_start_;  ///< of a session that has no keyframe yet
   double closed_at_m_ = 0.0;              ///< distance driven at the last accepted closure
-  std::map<LandmarkId, LandmarkId> survivor_of_;
+  MergedIds merged_ids_;
   std::map<LandmarkId, std::set<int>> keyframes_of_;  ///< that saw a landmark of the graph
   std::vector<MergedLandmark> newly_merged_;
 };

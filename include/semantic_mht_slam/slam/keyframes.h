@@ -5,6 +5,7 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/map/submap.h"
+#include "semantic_mht_slam/models/odometry_noise.h"
 #include "semantic_mht_slam/place/scene.h"
 #include "semantic_mht_slam/slam/frame.h"
 
@@ -15,8 +16,6 @@ struct KeyframeConfig {
   double spacing_m = 5.0;
   double sighting_floor_m = 0.1;
   double vertical_floor_m = 1.0;
-  double odometry_stddev_m = 0.03;
-  double odometry_stddev_rad = 0.0007;
 };
 
 void describe(KeyframeConfig& config, Fields& fields);
@@ -43,14 +42,17 @@ struct MapKeyframe {
 /// A landmark of a submap as the scene of a keyframe has it; `floor_m` is added to its deviation.
 SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_submap, double floor_m);
 
-/// Noise of a detection's centroid, base frame, m^2.
-using DetectionCov = std::function<Eigen::Matrix3d(const Detection&)>;
+/// What a sighting's covariance is made of.
+struct SightingNoise {
+  OdometryNoise odometry;                                     ///< from the keyframe to the detection
+  std::function<Eigen::Matrix3d(const Detection&)> detector;  ///< of a detection's centroid, base frame, m^2
+};
 
 /// Cuts a submap into keyframes. `frames` are those of the submap in their order; `driven_m` was driven before the
 /// first of them. Every landmark of the submap with at least `keep_prob` of existence gets one sighting a keyframe that
 /// sees it: the information-weighted mean of its detections, carried to the keyframe by odometry, with a floor for
 /// errors that they share.
 std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m,
-                                          double keep_prob, const DetectionCov& cov, const KeyframeConfig& config);
+                                          double keep_prob, const SightingNoise& noise, const KeyframeConfig& config);
 
 }  // namespace semantic_mht_slam

@@ -172,6 +172,7 @@ class Slam {
   std::vector<Frame> submap_frames_;  ///< of the submap that is open
   double driven_m_ = 0.0;             ///< up to the newest frame
   double submap_driven_m_ = 0.0;      ///< up to the first frame of the open submap
+  OdometryNoise odometry_noise_;
   KeyframeConfig keyframe_config_;
   double keep_prob_;
   int earlier_after_submaps_ = 0;  ///< what was not seen in so many submaps is of an earlier pass

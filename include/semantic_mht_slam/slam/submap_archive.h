@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "semantic_mht_slam/map/merged_ids.h"
 #include "semantic_mht_slam/map/submap.h"
 
 namespace semantic_mht_slam {
@@ -32,7 +33,7 @@ class SubmapArchive {
   static const MixtureLandmark* findLandmark(const Submap& submap, LandmarkId id);
 
   /// The landmark that an id stands for now: itself, or the one that it was merged into.
-  LandmarkId resolve(LandmarkId id) const;
+  LandmarkId resolve(LandmarkId id) const { return merged_ids_.resolve(id); }
 
   /// Every detection of the finished submaps with the landmark of the map that it belongs to; kNoLandmark for false
   /// positives and for landmarks that did not make it into the map.
@@ -54,7 +55,7 @@ class SubmapArchive {
   double keep_prob_;
   std::vector<std::shared_ptr<const Submap>> submaps_;
   std::map<LandmarkId, Entry> landmarks_;
-  std::map<LandmarkId, LandmarkId> survivor_of_;
+  MergedIds merged_ids_;
 };
 
 /// A landmark moved from frame b to frame a.
