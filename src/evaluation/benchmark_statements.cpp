@@ -29,8 +29,29 @@ std::string metres(double value) {
   return formatFixed(value, 3) + " m";
 }
 
+/// One figure of the full system and of another method, over the cases where both have it.
+struct PairedFigure {
+  std::vector<double> own;
+  std::vector<double> other;
+
+  void add(const BenchmarkGroup& own_group, const BenchmarkGroup& other_group, const char* name) {
+    const double a = medianOf(own_group, name);
+    const double b = medianOf(other_group, name);
+    if (!std::isfinite(a) || !std::isfinite(b)) return;
+    own.push_back(a);
+    other.push_back(b);
+  }
+
+  double difference() const { return own.empty() ? 0.0 : mean(own) - mean(other); }
+  std::string text(int digits) const {
+    return formatFixed(mean(own), digits) + " against " + formatFixed(mean(other), digits);
+  }
+};
+
 /// The full system against another method, over the cases where both have figures.
 struct Comparison {
+  PairedFigure association;  ///< local F1
+  PairedFigure recall;       ///< of revisits, by loop closures
   std::vector<double> own_m;
   std::vector<double> other_m;
   std::vector<double> own_running_m;
@@ -48,9 +69,28 @@ Comparison compare(const std::vector<BenchmarkGroup>& groups, const std::string&
     result.other_m.push_back(medianOf(*other, "se3_m"));
     result.own_running_m.push_back(medianOf(group, "running_mean_m"));
     result.other_running_m.push_back(medianOf(*other, "running_mean_m"));
+    result.association.add(group, *other, "association_local_f1");
+    result.recall.add(group, *other, "closures_recall");
     if (!(result.own_m.back() < result.other_m.back())) result.not_better.push_back(nameOf(group.first));
   }
   return result;
+}
+
+/// Where a better trajectory was lost: in the association, in the closures, or behind both.
+std::string reasonOf(const Comparison& comparison) {
+  constexpr double kSame = 0.005;
+  const PairedFigure& association = comparison.association;
+  const PairedFigure& recall = comparison.recall;
+  if (association.own.empty() && recall.own.empty()) return "";
+  std::string reason = "; why:";
+  if (!association.own.empty()) reason += " association F1 " + association.text(3) + ",";
+  if (!recall.own.empty()) reason += " revisits closed " + recall.text(3) + ",";
+  reason.pop_back();
+  if (association.difference() < 0.0) return reason + ": its association is worse";
+  if (recall.difference() < -kSame) return reason + ": it closes fewer revisits";
+  if (recall.difference() > kSame) return reason + ": the revisits that it closes more do not lower the error";
+  return reason + ": both close the same revisits by the same back end, whose robust loss and merged landmarks " +
+         "make up for what the other associates wrong";
 }
 
 Statement compared(const Comparison& comparison, const std::string& objects, const std::string& method) {
@@ -66,6 +106,7 @@ Statement compared(const Comparison& comparison, const std::string& objects, con
   const std::size_t better = comparison.own_m.size() - comparison.not_better.size();
   statement.text += "; better in " + std::to_string(better) + " of them";
   if (!comparison.not_better.empty()) statement.text += ", not in " + firstOf(comparison.not_better);
+  if (!statement.holds) statement.text += reasonOf(comparison);
   return statement;
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/common/text.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -77,6 +79,23 @@ TEST(BenchmarkTableTest, StatementsTellWhereTheFullSystemIsNotBetter) {
   const Statement equal = statementOn({makeRun("00", "mhm", 1, 1.0), makeRun("00", "dpmhm", 1, 1.0)}, "than mhm");
   EXPECT_FALSE(equal.holds);
   EXPECT_NE(equal.text.find("NOT better"), std::string::npos) << equal.text;
+}
+
+TEST(BenchmarkTableTest, WhereTheFullSystemIsNotBetterItsFiguresSayWhy) {
+  const auto reason = [](double own_f1, double other_f1, double own_recall, double other_recall) {
+    BenchmarkRun own = makeRun("05", "dpmhm", 1, 1.0);
+    BenchmarkRun other = makeRun("05", "mhm", 1, 0.5);
+    own.figures.insert(own.figures.end(), {{"association_local_f1", own_f1}, {"closures_recall", own_recall}});
+    other.figures.insert(other.figures.end(), {{"association_local_f1", other_f1}, {"closures_recall", other_recall}});
+    const std::string text = statementOn({own, other}, "than mhm").text;
+    EXPECT_NE(text.find("; why: association F1 " + formatFixed(own_f1, 3)), std::string::npos) << text;
+    return text.substr(text.rfind(": ") + 2);
+  };
+  EXPECT_EQ(reason(0.7, 0.8, 1.0, 1.0), "its association is worse");
+  EXPECT_EQ(reason(0.9, 0.8, 0.5, 1.0), "it closes fewer revisits");
+  EXPECT_EQ(reason(0.9, 0.8, 1.0, 1.0).rfind("both close the same revisits", 0), 0U);
+  const Statement silent = statementOn({makeRun("00", "mhm", 1, 0.5), makeRun("00", "dpmhm", 1, 1.0)}, "than mhm");
+  EXPECT_EQ(silent.text.find("why"), std::string::npos) << "nothing is known";
 }
 
 TEST(BenchmarkTableTest, OnlyCasesThatBothMethodsHaveAreCompared) {
