@@ -57,7 +57,7 @@ struct TreeConfig {
 /// Odometry noise, and how long a submap lives.
 struct SubmapConfig {
   double length_m = 30.0;
-  double odometry_stddev_m = 0.03;
+  double odometry_stddev_m = 0.045;
   double odometry_stddev_rad = 0.0007;
   bool correct_pose = true;
   double propagation_m = 120.0;
