@@ -1,6 +1,7 @@
 #include "graph_archive.h"
 
 #include <map>
+#include <numeric>
 
 #include <Eigen/LU>
 
@@ -71,7 +72,9 @@ void GraphState::transfer(StateArchive& archive) {
     requireIndex(landmark.anchor, submaps.size());
     for (const SightingFactor& sighting : landmark.sightings) requireIndex(sighting.submap, submaps.size());
   }
+  priors = 0;
   for (const SubmapState& submap : submaps) {
+    priors += submap.priors.size();
     for (const std::int64_t number : submap.landmarks) requireIndex(0, landmarks.count(number));
     for (const int loop : submap.loops) requireIndex(loop, loops.size());
   }
@@ -121,6 +124,7 @@ void Hierarchy::LoopLink::transfer(StateArchive& archive) {
 
 void Hierarchy::transfer(StateArchive& archive) {
   archive(skeleton_, loop_links_, landmark_links_, touched_, prior_links_, bend_, news_, is_pending_);
+  priors_in_ = std::accumulate(prior_links_.begin(), prior_links_.end(), std::size_t{0});
 }
 
 void Skeleton::Link::transfer(StateArchive& archive) {

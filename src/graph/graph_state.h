@@ -64,6 +64,7 @@ struct GraphState {
   std::map<std::int64_t, LandmarkState> landmarks;
   std::map<std::int64_t, std::int64_t> merged_landmarks;  ///< number given up -> number that it was merged into
   std::deque<LoopState3> loops;
+  std::size_t priors = 0;  ///< of all submaps together
 
   /// Into an empty state, or out of one.
   void transfer(StateArchive& archive);

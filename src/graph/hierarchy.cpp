@@ -9,7 +9,8 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kQuietGap = 24.0;      // four times the expected distance squared of a right loop closure: can wait
+// A solution takes time in proportion to the nodes and spreads what is new among them: it waits for as much.
+constexpr double kQuietGapPerNode = 0.24;
 constexpr double kBendRadius_m = 10.0;  // a bend by 1 rad counts like 10 m
 constexpr double kWorthRepairing_m = 2e-3;
 constexpr double kSwitchOffFactor = 3.0;  // of the gate
@@ -115,6 +116,7 @@ std::vector<int> Hierarchy::takeTouched(const GraphState& graph) {
 }
 
 void Hierarchy::addPriors(GraphState& graph) {
+  if (priors_in_ == graph.priors) return;
   for (int submap = 0; submap < static_cast<int>(graph.submaps.size()); ++submap) {
     const auto& priors = graph.submaps[submap].priors;
     for (std::size_t& i = prior_links_[submap]; i < priors.size(); ++i) {
@@ -125,6 +127,7 @@ void Hierarchy::addPriors(GraphState& graph) {
                                          to_node * priors[i].cov * to_node.transpose());
       skeleton_.setActive(link, true);
       is_pending_ = true;
+      ++priors_in_;
     }
   }
 }
@@ -138,26 +141,31 @@ void Hierarchy::synchronize(const GraphState& graph) {
   for (int node = 0; node < skeleton_.nodes(); ++node) skeleton_.setPose(node, graph.submaps[firstOf(node)].pose());
 }
 
+double Hierarchy::quietGap() const {
+  return kQuietGapPerNode * skeleton_.nodes();
+}
+
 bool Hierarchy::update(GraphState& graph, const LoopReview& review) {
   addPriors(graph);
-  for (int i = 0; i < static_cast<int>(graph.loops.size()); ++i) {
-    const bool is_new = i >= static_cast<int>(loop_links_.size());
+  const int known = static_cast<int>(loop_links_.size());
+  for (int i = std::min(known, review.firstOpen(graph)); i < static_cast<int>(graph.loops.size()); ++i) {
+    const bool is_new = i >= known;
     if (is_new) loop_links_.push_back({addLiftedLink(graph, review, graph.loops[i].constraint), false});
     const bool is_active = graph.loops[i].state == LoopState::kAccepted;
     const std::optional<int> link = loop_links_[i].link;
     if (!link || skeleton_.isActive(*link) == is_active) continue;
     skeleton_.setActive(*link, is_active);
-    news_ += is_active ? skeleton_.mahalanobisSq(*link) : kQuietGap;
+    news_ += is_active ? skeleton_.mahalanobisSq(*link) : quietGap();
   }
-  is_pending_ = is_pending_ || news_ > kQuietGap;
+  is_pending_ = is_pending_ || news_ > quietGap();
   return is_pending_;
 }
 
-Skeleton::Outcome Hierarchy::solve(GraphState& graph, double max_seconds) {
+Skeleton::Outcome Hierarchy::solve(GraphState& graph, const LoopReview& review, double max_seconds) {
   const Skeleton::Outcome outcome = skeleton_.optimize(config_.global_iterations, max_seconds);
   is_pending_ = outcome.failure.empty() && !outcome.converged;
   news_ = 0.0;
-  if (outcome.failure.empty()) moveSubmaps(graph);
+  if (outcome.failure.empty()) moveSubmaps(graph, review);
   return outcome;
 }
 
@@ -176,34 +184,41 @@ void Hierarchy::settle() {
   }
 }
 
-/// From the last chunk to the first: a chunk needs the old pose of the node behind it.
-void Hierarchy::moveSubmaps(GraphState& graph) {
+void Hierarchy::moveSubmaps(GraphState& graph, const LoopReview& review) {
   std::vector<Pose> old_nodes;
   for (int node = 0; node < skeleton_.nodes(); ++node) old_nodes.push_back(graph.submaps[firstOf(node)].pose());
-  for (int chunk = 0; chunk < skeleton_.nodes(); ++chunk) moveChunk(graph, chunk, old_nodes);
+  for (int chunk = 0; chunk < skeleton_.nodes(); ++chunk) moveChunk(graph, review, chunk, old_nodes);
 }
 
-/// Submaps between two nodes follow both, in proportion to their place between them; those behind the last node follow
-/// it rigidly.
-void Hierarchy::moveChunk(GraphState& graph, int chunk, const std::vector<Pose>& old_nodes) {
-  const Pose T_new_old = skeleton_.pose(chunk) * old_nodes[chunk].inverse();
-  const int last = std::min(firstOf(chunk + 1), static_cast<int>(graph.submaps.size())) - 1;
+/// Submaps between two nodes follow as odometry between the nodes lets them: of the step at which the node behind has
+/// come to stand otherwise, each takes the share that is expected of it. Those behind the last node follow it rigidly.
+void Hierarchy::moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_nodes) {
+  const Pose T_node_world_old = old_nodes[chunk].inverse();
+  const Pose T_world_node = skeleton_.pose(chunk);
+  const int first = firstOf(chunk);
+  const int next = std::min(firstOf(chunk + 1), static_cast<int>(graph.submaps.size()));
+  const auto move = [&](int submap, const Pose& step) {
+    writeBlock(T_world_node * step * T_node_world_old * graph.submaps[submap].pose(),
+               graph.submaps[submap].block.data());
+  };
   if (chunk + 1 == skeleton_.nodes()) {
-    for (int i = firstOf(chunk); i <= last; ++i) {
-      writeBlock(T_new_old * graph.submaps[i].pose(), graph.submaps[i].block.data());
-    }
+    for (int i = first; i < next; ++i) move(i, Pose::identity());
     return;
   }
-  const Pose T_new_old_next = skeleton_.pose(chunk + 1) * old_nodes[chunk + 1].inverse();
-  const Vector6d bend = offset((T_new_old * old_nodes[chunk + 1]).inverse() * skeleton_.pose(chunk + 1));
-  const double share = static_cast<double>(config_.window_submaps) / config_.chunk_submaps;
-  for (int piece = firstOf(chunk) / config_.window_submaps; piece <= last / config_.window_submaps; ++piece) {
-    bend_[piece] += share * (bend.head<3>().norm() + kBendRadius_m * bend.tail<3>().norm());
+  const Pose T_node_next_old = T_node_world_old * old_nodes[chunk + 1];
+  const Vector6d step = offset(T_world_node.inverse() * skeleton_.pose(chunk + 1) * T_node_next_old.inverse());
+  const Vector6d pull = review.odometryStepCov(first, next).ldlt().solve(step);
+  for (int i = first; i < next; ++i) {
+    const Vector6d share = review.odometryStepCov(first, i) * pull;
+    move(i, {expRotation(share.tail<3>()), share.head<3>()});
   }
-  for (int i = firstOf(chunk); i <= last; ++i) {
-    const Pose old = graph.submaps[i].pose();
-    const double fraction = static_cast<double>(i - firstOf(chunk)) / config_.chunk_submaps;
-    writeBlock(interpolate(T_new_old * old, T_new_old_next * old, fraction), graph.submaps[i].block.data());
+  addBend(first, next - 1, offset(T_node_next_old.inverse() * T_world_node.inverse() * skeleton_.pose(chunk + 1)));
+}
+
+void Hierarchy::addBend(int first, int last, const Vector6d& bend) {
+  const double share = static_cast<double>(config_.window_submaps) / config_.chunk_submaps;
+  for (int piece = first / config_.window_submaps; piece <= last / config_.window_submaps; ++piece) {
+    bend_[piece] += share * (bend.head<3>().norm() + kBendRadius_m * bend.tail<3>().norm());
   }
 }
 

@@ -44,7 +44,7 @@ class Hierarchy {
   void synchronize(const GraphState& graph);
 
   /// Solves the skeleton and moves all submaps accordingly.
-  Skeleton::Outcome solve(GraphState& graph, double max_seconds);
+  Skeleton::Outcome solve(GraphState& graph, const LoopReview& review, double max_seconds);
 
   /// Mahalanobis distance squared of a loop closure from the estimate of the skeleton, whose resolution its covariance
   /// includes.
@@ -79,12 +79,14 @@ class Hierarchy {
   int chunkOf(int submap) const { return submap / config_.chunk_submaps; }
   int firstOf(int chunk) const { return chunk * config_.chunk_submaps; }
   int nearestNode(int submap) const;
+  double quietGap() const;
   void addNode(GraphState& graph, const LoopReview& review, int submap);
   std::optional<int> addLiftedLink(const GraphState& graph, const LoopReview& review, const LoopConstraint& loop);
   void addSharedLandmarks(const GraphState& graph, const LoopReview& review, int submap);
   void addPriors(GraphState& graph);
-  void moveSubmaps(GraphState& graph);
-  void moveChunk(GraphState& graph, int chunk, const std::vector<Pose>& old_nodes);
+  void moveSubmaps(GraphState& graph, const LoopReview& review);
+  void moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_nodes);
+  void addBend(int first, int last, const Vector6d& bend);
 
   const PoseGraphConfig& config_;
   Skeleton skeleton_;
@@ -92,6 +94,7 @@ class Hierarchy {
   std::map<int, LoopLink> landmark_links_;  ///< through landmarks that were seen again, by the submap that saw them
   std::set<int> touched_;                   ///< submaps that saw landmarks that were merged
   std::vector<std::size_t> prior_links_;    ///< per submap: how many of its priors are in
+  std::size_t priors_in_ = 0;               ///< sum of `prior_links_`
   std::vector<double> bend_;                ///< per piece of `window_submaps`, metres
   double news_ = 0.0;  ///< Mahalanobis distances squared that loop closures brought since the skeleton was solved
   bool is_pending_ = false;

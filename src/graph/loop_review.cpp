@@ -62,7 +62,7 @@ void LoopReview::add(const GraphState& graph, const LoopConstraint& constraint) 
 std::vector<int> LoopReview::candidates(const GraphState& graph) const {
   std::vector<int> result;
   const int count = static_cast<int>(graph.loops.size());
-  for (int i = std::max(0, count - config_.compared_loops); i < count; ++i) {
+  for (int i = firstOpen(graph); i < count; ++i) {
     const LoopState state = graph.loops[i].state;
     if (state == LoopState::kAccepted || state == LoopState::kInconsistent) result.push_back(i);
   }
@@ -77,25 +77,44 @@ void LoopReview::decide(GraphState& graph) {
     loop.state = fits_odometry_[reviewed_] ? LoopState::kAccepted : LoopState::kContradictsOdometry;
     loop.is_reviewed = true;
   }
-  const std::vector<int> nodes = candidates(graph);
-  BitGraph agreement(static_cast<int>(nodes.size()));
-  for (int a = 0; a < agreement.size(); ++a) {
-    for (int b = 0; b < a; ++b) {
-      if (agrees_[nodes[a]][nodes[a] - nodes[b] - 1]) agreement.join(a, b);
-    }
-  }
-  std::vector<bool> chosen(nodes.size(), false);
-  for (const int node : maximumClique(agreement, kCliqueSteps)) chosen[node] = true;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    LoopState3& loop = graph.loops[nodes[i]];
+  const std::vector<int> tested = candidates(graph);
+  const std::vector<bool> chosen = largestAgreement(tested);
+  for (std::size_t i = 0; i < tested.size(); ++i) {
+    LoopState3& loop = graph.loops[tested[i]];
     if (chosen[i]) loop.is_readmitted = false;
     loop.state = chosen[i] || loop.is_readmitted ? LoopState::kAccepted : LoopState::kInconsistent;
   }
 }
 
+/// Which of `loops`, ascending, are in their largest set that agrees. Those that agree with all others are in every
+/// such set, and mostly that is all of them: the search is for the rest.
+std::vector<bool> LoopReview::largestAgreement(const std::vector<int>& loops) const {
+  const auto disagree = [&](std::size_t newer, std::size_t older) {
+    return !agrees_[loops[newer]][loops[newer] - loops[older] - 1];
+  };
+  std::vector<bool> chosen(loops.size(), true);
+  for (std::size_t newer = 0; newer < loops.size(); ++newer) {
+    for (std::size_t older = 0; older < newer; ++older) {
+      if (disagree(newer, older)) chosen[newer] = chosen[older] = false;
+    }
+  }
+  std::vector<std::size_t> contested;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!chosen[i]) contested.push_back(i);
+  }
+  BitGraph agreement(static_cast<int>(contested.size()));
+  for (int newer = 0; newer < agreement.size(); ++newer) {
+    for (int older = 0; older < newer; ++older) {
+      if (!disagree(contested[newer], contested[older])) agreement.join(newer, older);
+    }
+  }
+  for (const int node : maximumClique(agreement, kCliqueSteps)) chosen[contested[node]] = true;
+  return chosen;
+}
+
 void LoopReview::compareWithEstimate(GraphState& graph, const std::function<double(int)>& gap) const {
   const int count = static_cast<int>(graph.loops.size());
-  for (int i = std::max(0, count - config_.compared_loops); i < count; ++i) {
+  for (int i = firstOpen(graph); i < count; ++i) {
     LoopState3& loop = graph.loops[i];
     if (!loop.is_reviewed) continue;
     const double distance = gap(i);

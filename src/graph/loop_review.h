@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -27,6 +28,11 @@ class LoopReview {
   /// A loop closure was added.
   void add(const GraphState& graph, const LoopConstraint& loop);
 
+  /// The first loop closure whose state may still change.
+  int firstOpen(const GraphState& graph) const {
+    return std::max(0, static_cast<int>(graph.loops.size()) - config_.compared_loops);
+  }
+
   /// Sets the states of the newest loop closures if there are new ones.
   void decide(GraphState& graph);
 
@@ -40,6 +46,9 @@ class LoopReview {
   /// Covariance of odometry between two submaps, in `PoseCov` form.
   PoseCov odometryCov(int from, int to) const;
 
+  /// The same as a step at the beginning: T_from_to = Exp(step) * T_from_to as expected. Steps add up along odometry.
+  PoseCov odometryStepCov(int from, int to) const { return odometry_.between(from, to).cov; }
+
   /// What was decided, with the loop closures of `graph`; odometry is extended again by whoever reads.
   void transfer(StateArchive& archive, const GraphState& graph);
 
@@ -52,6 +61,7 @@ class LoopReview {
   int reviewed_ = 0;
 
   std::vector<int> candidates(const GraphState& graph) const;
+  std::vector<bool> largestAgreement(const std::vector<int>& loops) const;
   UncertainLink<3> estimatedLink(const GraphState& graph, int from, int to) const;
   bool agree(const GraphState& graph, const TestedLoop<3>& a, const TestedLoop<3>& b) const;
 };

@@ -96,6 +96,7 @@ void PoseGraph::Impl::addPrior(int submap, const Pose& T_world_submap, const Pos
   require(T_world_submap.isValid() && isCovariance6(cov), "a prior is not finite or not positive definite");
   graph_.submaps[submap].priors.push_back(
       {T_world_submap, cov, std::make_unique<RelativePose3Cost>(T_world_submap, cov.inverse())});
+  ++graph_.priors;
 }
 
 void PoseGraph::Impl::mergeLandmarks(std::int64_t merged, std::int64_t survivor) {
@@ -129,7 +130,7 @@ bool PoseGraph::Impl::solveGlobally(const Deadline& deadline, PoseGraphUpdate& u
     update.out_of_time = true;
     return false;
   }
-  const Skeleton::Outcome outcome = hierarchy_.solve(graph_, deadline.left_s());
+  const Skeleton::Outcome outcome = hierarchy_.solve(graph_, review_, deadline.left_s());
   update.iterations += outcome.iterations;
   update.moved_everything = true;
   update.out_of_time = update.out_of_time || outcome.out_of_time;
@@ -149,6 +150,7 @@ PoseGraphUpdate PoseGraph::Impl::optimize() {
   solveWindow(range(std::max(0, count - config_.window_submaps), count), config_.window_iterations,
               deadline.left_s(kWindowShare), update);
   hierarchy_.synchronize(graph_);
+  const bool has_time = in_hierarchy_ == count;  // no new submap
   for (; in_hierarchy_ < count; ++in_hierarchy_) hierarchy_.extend(graph_, review_, in_hierarchy_);
   hierarchy_.linkTouched(graph_, review_);
   review_.decide(graph_);
@@ -157,10 +159,10 @@ PoseGraphUpdate PoseGraph::Impl::optimize() {
     const std::vector<int> touched = hierarchy_.takeTouched(graph_);
     if (!touched.empty()) solveWindow(touched, config_.window_iterations, deadline.left_s(), update);
   }
-  for (int i = 0; i < config_.repair_windows && !deadline.hasPassed(); ++i) {
+  const int interval = config_.repair_interval;
+  if (interval > 0 && (has_time || count % interval == 0) && !deadline.hasPassed()) {
     const std::vector<int> bent = hierarchy_.takeBentPiece(graph_);
-    if (bent.empty()) break;
-    solveWindow(bent, kRepairIterations, deadline.left_s(), update);
+    if (!bent.empty()) solveWindow(bent, kRepairIterations, deadline.left_s(), update);
   }
   update.out_of_time = update.out_of_time || deadline.hasPassed();
   reportChanges(update);
@@ -200,9 +202,10 @@ PoseGraphUpdate PoseGraph::Impl::optimizeFully() {
 }
 
 void PoseGraph::Impl::reportChanges(PoseGraphUpdate& update) {
-  for (int i = 0; i < static_cast<int>(graph_.loops.size()); ++i) {
+  const int known = static_cast<int>(reported_.size());
+  for (int i = std::min(known, review_.firstOpen(graph_)); i < static_cast<int>(graph_.loops.size()); ++i) {
     const LoopState3& loop = graph_.loops[i];
-    const bool is_new = i >= static_cast<int>(reported_.size());
+    const bool is_new = i >= known;
     if (is_new) reported_.push_back(loop.state);
     if (!is_new && reported_[i] == loop.state) continue;
     reported_[i] = loop.state;

@@ -40,7 +40,7 @@ inline void check(const PoseGraphConfig& config) {
   require(config.loop_cauchy_scale > 0.0 && config.landmark_cauchy_scale > 0.0, "a Cauchy scale is not positive");
   require(config.window_submaps >= 1 && config.chunk_submaps >= 2, "window or chunk too small");
   require(config.window_iterations >= 1 && config.global_iterations >= 1, "iterations below 1");
-  require(config.repair_windows >= 0 && config.whole_submaps >= 0 && config.compared_loops >= 1, "negative count");
+  require(config.repair_interval >= 0 && config.whole_submaps >= 0 && config.compared_loops >= 1, "negative count");
   require(config.loop_gate > 0.0 && config.odometry_cov_scale >= 1.0 && config.time_budget_s >= 0.0, "out of range");
 }
 

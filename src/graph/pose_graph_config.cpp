@@ -15,8 +15,8 @@ void describe(PoseGraphConfig& config, Fields& fields) {
              "Iterations of the newest submaps in one call.");
   fields.add("global_iterations", config.global_iterations, "", {1, 100},
              "Iterations of the skeleton in one call; what is left is done in the next.");
-  fields.add("repair_windows", config.repair_windows, "", {0, 1000},
-             "Chunks bent by a loop closure that one call optimises in full.");
+  fields.add("repair_interval", config.repair_interval, "", {0, 1000},
+             "Every so many submaps a piece of the drive that loop closures bent is optimised in full; 0: never.");
   fields.add("whole_submaps", config.whole_submaps, "", {0, 1000000},
              "Graphs up to this size are optimised as a whole when a loop closes.");
   fields.add("time_budget_s", config.time_budget_s, "s", {0.0, 1e6},

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <Eigen/LU>
+#include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
 #include <ceres/types.h>
 
@@ -12,11 +13,26 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kTolerance = 1e-2;  // of the cost; what is left is done with the next loop closures
+
 ceres::Problem::Options problemOptions() {
   ceres::Problem::Options options = lentProblemOptions();
   options.enable_fast_removal = true;
   return options;
 }
+
+/// Ends a solution after a step whose effect was foreseen: another one would gain no more than what was not. Ceres's
+/// own test for that needs the next step, and throws it away.
+class StopWhenForeseen final : public ceres::IterationCallback {
+ public:
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& done) override {
+    if (done.iteration == 0 || !done.step_is_successful || !(done.relative_decrease > 0.0)) {
+      return ceres::SOLVER_CONTINUE;
+    }
+    const double missed = std::abs(done.cost_change - done.cost_change / done.relative_decrease);
+    return missed <= kTolerance * done.cost ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+};
 
 }  // namespace
 
@@ -92,14 +108,16 @@ Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
   options.initial_trust_region_radius = 1e16;
   options.jacobi_scaling = false;
   options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-2;  // what is left is done with the next loop closures
+  options.function_tolerance = kTolerance;
+  StopWhenForeseen stop;
+  options.callbacks.push_back(&stop);
   options.logging_type = ceres::SILENT;
   if (max_seconds > 0.0) options.max_solver_time_in_seconds = max_seconds;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);
   Outcome outcome;
   outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
-  outcome.converged = summary.termination_type == ceres::CONVERGENCE;
+  outcome.converged = summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
   outcome.out_of_time = summary.termination_type == ceres::NO_CONVERGENCE && outcome.iterations < max_iterations;
   bool is_finite = std::isfinite(summary.final_cost);
   for (const auto& block : blocks_) {

@@ -27,7 +27,7 @@ struct PoseGraphConfig {
   int chunk_submaps = 10;
   int window_iterations = 3;
   int global_iterations = 4;
-  int repair_windows = 1;
+  int repair_interval = 4;
   int whole_submaps = 150;
   double time_budget_s = 0.0;
   double loop_gate = 16.812;
