@@ -31,7 +31,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr const char* kUsage =
-    "Simulates a scenario's drive, made again and again for hours, and feeds it to the slam_node that runs, as fast as\n"
+    "Simulates a scenario's drive, made again and again, and feeds it to the slam_node that runs, as fast as\n"
     "the node takes it: a frame's objects and odometry when the node has answered the frame before. Prints a row for\n"
     "each part of the drive: how long answers took, and what the node says of its memory and map.\n"
     "  long_drive [--hours H] [--row H] [--scenario FILE] [--set KEY=VALUE ...] [--seed N]\n";
