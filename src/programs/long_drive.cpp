@@ -33,7 +33,8 @@ namespace {
 constexpr const char* kUsage =
     "Simulates a scenario's drive, made again and again, and feeds it to the slam_node that runs, as fast as\n"
     "the node takes it: a frame's objects and odometry when the node has answered the frame before. Prints a row for\n"
-    "each part of the drive: how long answers took, and what the node says of its memory and map.\n"
+    "each part of the drive: how long answers took, how far poses\n"
+    "were off, and what the node says of its memory and map.\n"
     "  long_drive [--hours H] [--row H] [--scenario FILE] [--set KEY=VALUE ...] [--seed N]\n";
 
 struct Arguments {
@@ -78,8 +79,13 @@ class FedNode {
     }
   }
 
-  /// Sends a frame and returns the milliseconds until its pose has come and its objects are part of the map.
-  double feed(Stamp stamp, const Pose& T_odom_base, const SemanticObjectArray& objects) {
+  struct Answer {
+    double time_ms = 0.0;
+    Pose T_map_base;
+  };
+
+  /// Sends a frame and waits until its pose has come and its objects are taken in.
+  Answer feed(Stamp stamp, const Pose& T_odom_base, const SemanticObjectArray& objects) {
     constexpr std::chrono::seconds kLimit(60);
     const nav_msgs::Odometry odometry = toOdometry({stamp, T_odom_base}, frames_.odom_frame, frames_.base_frame);
     const Clock::time_point begin = Clock::now();
@@ -89,7 +95,7 @@ class FedNode {
     if (!changed_.wait_for(lock, kLimit, [&] { return last_pose_ >= stamp && last_objects_ >= stamp; })) {
       throw InputError("the node has not answered for 60 s");
     }
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    return {std::chrono::duration<double, std::milli>(Clock::now() - begin).count(), T_map_base_};
   }
 
   /// What the node says of its estimator after now.
@@ -107,6 +113,7 @@ class FedNode {
   void notePose(const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) {
     const std::lock_guard<std::mutex> lock(mutex_);
     last_pose_ = toStamp(message->header.stamp);
+    T_map_base_ = fromMessage(message->pose.pose);
     changed_.notify_all();
   }
 
@@ -133,6 +140,7 @@ class FedNode {
   std::mutex mutex_;
   std::condition_variable changed_;
   Stamp last_pose_ = 0;
+  Pose T_map_base_;
   Stamp last_objects_ = 0;
   int reports_ = 0;
   std::map<std::string, std::string> report_;
@@ -143,19 +151,28 @@ class FedNode {
   ros::Subscriber diagnostics_;
 };
 
-void printHead() {
-  std::printf("%9s %9s %9s %9s %9s %9s %9s %9s %9s\n", "drive (h)", "way (km)", "p50 (ms)", "p99 (ms)", "max (ms)",
-              "MB", "landmarks", "submaps", "loops");
+/// What is printed of a part of the drive.
+struct Part {
+  std::vector<double> times_ms;
+  std::vector<double> errors_m;  ///< of the pose at once, from above
+};
+
+double quantile(std::vector<double> values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
-void printRow(double drive_s, double way_m, std::vector<double> times_ms, std::map<std::string, std::string> report) {
-  std::sort(times_ms.begin(), times_ms.end());
-  const auto quantile = [&](double share) {
-    return times_ms[static_cast<std::size_t>(share * static_cast<double>(times_ms.size() - 1))];
-  };
-  std::printf("%9.2f %9.1f %9.2f %9.2f %9.1f %9s %9s %9s %9s\n", drive_s / 3600.0, way_m / 1000.0, quantile(0.5),
-              quantile(0.99), times_ms.back(), report["resident memory (MB)"].c_str(), report["landmarks"].c_str(),
-              report["submaps"].c_str(), report["loops"].c_str());
+void printHead() {
+  std::printf("%9s %9s %9s %9s %9s %9s %9s %9s %9s %9s %9s\n", "drive (h)", "way (km)", "p50 (ms)", "p99 (ms)",
+              "max (ms)", "off p50 m", "off p99 m", "MB", "landmarks", "submaps", "loops");
+}
+
+void printRow(double drive_s, double way_m, const Part& part, std::map<std::string, std::string> report) {
+  std::printf("%9.2f %9.1f %9.2f %9.2f %9.1f %9.2f %9.2f %9s %9s %9s %9s\n", drive_s / 3600.0, way_m / 1000.0,
+              quantile(part.times_ms, 0.5), quantile(part.times_ms, 0.99), quantile(part.times_ms, 1.0),
+              quantile(part.errors_m, 0.5), quantile(part.errors_m, 0.99), report["resident memory (MB)"].c_str(),
+              report["landmarks"].c_str(), report["submaps"].c_str(), report["loops"].c_str());
   std::fflush(stdout);
 }
 
@@ -172,19 +189,22 @@ void feedDrive(const SimulatedDrive& drive, const ClassTable& classes, double ho
   const auto frames = static_cast<std::size_t>(
       std::upper_bound(drive.stamps.begin(), drive.stamps.end(), stampFromSeconds(3600.0 * hours)) -
       drive.stamps.begin());
-  std::vector<double> times_ms;
+  Part part;
   double way_m = 0.0;
   double next_row_s = row_s;
   printHead();
   for (std::size_t k = 0; k < frames && ros::ok(); ++k) {
     const Stamp stamp = drive.stamps[k] + kOrigin;
-    times_ms.push_back(node.feed(stamp, drive.T_odom_base[k],
-                                 toMessage(stamp, node.frames().base_frame, drive.detections[k], classes)));
+    const FedNode::Answer answer = node.feed(stamp, drive.T_odom_base[k],
+                                             toMessage(stamp, node.frames().base_frame, drive.detections[k], classes));
+    part.times_ms.push_back(answer.time_ms);
+    const Eigen::Vector3d off_m = answer.T_map_base.translation_m - drive.T_map_base[k].translation_m;
+    part.errors_m.push_back(off_m.head<2>().norm());
     if (k > 0) way_m += (drive.T_map_base[k].translation_m - drive.T_map_base[k - 1].translation_m).norm();
     const double drive_s = secondsFromStamp(drive.stamps[k]);
     if (drive_s < next_row_s && k + 1 < frames) continue;
-    printRow(drive_s, way_m, std::move(times_ms), node.report());
-    times_ms.clear();
+    printRow(drive_s, way_m, part, node.report());
+    part = {};
     next_row_s += row_s;
   }
 }

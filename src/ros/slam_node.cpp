@@ -202,6 +202,7 @@ void SlamNode::noteStatus() {
   estimator_.counters = slam_->counters();
   estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
   if (!slam_->isLocated()) estimator_.mode += ", lost";
+  if (slam_->isFollowing()) estimator_.mode += ", known place";
   estimator_.hypotheses = slam_->hypotheses().size();
   estimator_.submaps = slam_->map().submaps().size();
   estimator_.landmarks = publisher_.landmarks();

@@ -107,7 +107,10 @@ class Slam {
   bool expectAt(const Pose& T_map_base, double stddev_m);
 
   /// True if the map is not added to: by choice, or because the vehicle is not found yet.
-  bool isLocalizing() const { return localizer_.has_value(); }
+  bool isLocalizing() const { return localizer_.has_value() && !is_following_; }
+
+  /// True if the map is not added to because the place was mapped `localization.known_passes` times.
+  bool isFollowing() const { return is_following_; }
 
   /// True if the vehicle knows where it is in the map.
   bool isLocated() const { return !localizer_ || localizer_->isLocated(); }
@@ -158,6 +161,9 @@ class Slam {
   void map(const Frame& frame);
   void localizeBy(const Frame& frame);
   void endSubmap();
+  void follow();
+  bool isKnown(const Eigen::Vector3d& position_m) const;
+  bool isKnownSince(std::size_t first_keyframe) const;
   void take(Submap submap);
   EarlierMap earlierMap(const Pose& T_odom_submap);
   std::vector<CorrectionAnchor> correctionAnchors(std::size_t session) const;
@@ -181,6 +187,8 @@ class Slam {
   LocalizerConfig localizer_config_;
   std::optional<Localizer> localizer_;  ///< while the map is not added to
   bool is_mapping_wanted_ = true;
+  bool is_place_known_ = false;  ///< that of the newest finished submap
+  bool is_following_ = false;
   std::optional<Frame> latest_frame_;
 };
 
