@@ -5,8 +5,8 @@ Runs its own master. Prints a line a run; ends with code 1 if two files differ.
 """
 import argparse
 import hashlib
-import multiprocessing
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -14,7 +14,8 @@ import tempfile
 import threading
 
 import rosbag
-import rosnode
+import rosgraph
+import roslib.packages
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from std_srvs.srv import Trigger
@@ -28,11 +29,6 @@ def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
-
-
-def spin():
-    while True:
-        pass
 
 
 class Arrivals:
@@ -61,7 +57,7 @@ class Arrivals:
 
 def replay(bag, rate, expected, path):
     """The map file of one replay."""
-    node = subprocess.Popen(["rosrun", "semantic_mht_slam", "slam_node"], stdout=subprocess.DEVNULL)
+    node = subprocess.Popen([roslib.packages.find_node("semantic_mht_slam", "slam_node")[0]], stdout=subprocess.DEVNULL)
     try:
         rospy.wait_for_service("/save_map", 20.0)
         arrivals = Arrivals()
@@ -76,7 +72,7 @@ def replay(bag, rate, expected, path):
         with open(path, "rb") as file:
             return file.read()
     finally:
-        rosnode.kill_nodes(["/slam_node"])
+        node.send_signal(signal.SIGINT)
         node.wait()
 
 
@@ -92,15 +88,13 @@ def main():
     port = free_port()
     os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
     master = subprocess.Popen(["roscore", "-p", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    busy = [multiprocessing.Process(target=spin, daemon=True) for _ in range(arguments.busy)]
+    busy = [subprocess.Popen(["sh", "-c", "while :; do :; done"]) for _ in range(arguments.busy)]
     digests = set()
     try:
-        while not rosnode.rosgraph.is_master_online():
+        while not rosgraph.is_master_online():
             master.poll()
         subprocess.run(["rosparam", "set", "use_sim_time", "true"], check=True)
         rospy.init_node("play_rates", disable_rostime=True)
-        for process in busy:
-            process.start()
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(arguments.repeat):
                 for rate in arguments.rates.split(","):
@@ -109,6 +103,8 @@ def main():
                     print(f"rate {rate:>4}: {len(content)} bytes, sha256 {hashlib.sha256(content).hexdigest()[:16]}",
                           flush=True)
     finally:
+        for process in busy:
+            process.kill()
         master.terminate()
         master.wait()
     if len(digests) > 1:

@@ -9,6 +9,7 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kTrajectoryPause = 20.0;  // as long as it took, so that a long one takes no more than 5 % of the time
 constexpr std::uint32_t kSubscriberQueue = 1000;  // a burst until the callback moves it to the bounded queue
 
 double wallSeconds() {
@@ -212,15 +213,21 @@ void SlamNode::noteStatus() {
 }
 
 void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
-  if (slam_->counters().odometry != published_odometry_) {
-    published_odometry_ = slam_->counters().odometry;
-    publisher_.publishTrajectory(slam_->trajectory());
-  }
+  std::unique_lock<TicketMutex> lock(slam_mutex_);
   if (live_.version() != published_live_) {
     published_live_ = live_.version();
     publisher_.publishMapMarkers(*slam_, live_.get());
   }
+  const ros::WallTime begin = ros::WallTime::now();
+  if (slam_->counters().odometry == published_odometry_ || begin < next_trajectory_) return;
+  published_odometry_ = slam_->counters().odometry;
+  const SlamPublisher::TrajectoryTurn turn = publisher_.takeTrajectoryTurn();
+  const std::vector<StampedPose> trajectory = slam_->trajectory();
+  const std::vector<Pose> odometry = publisher_.odometry();
+  lock.unlock();  // the messages of a long drive take a while to make
+  publisher_.publishTrajectory(turn, trajectory, odometry);
+  const ros::WallTime end = ros::WallTime::now();
+  next_trajectory_ = end + ros::WallDuration(kTrajectoryPause * (end - begin).toSec());
 }
 
 std::unique_ptr<SlamNode> makeSlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle,

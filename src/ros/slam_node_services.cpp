@@ -75,10 +75,10 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
   std::unique_ptr<Slam> loaded;
   bool has_same_parameters = true;
   try {
-    const LoadedMap map = readMapFile(request.path, config_, classes_, [] { return ros::ok(); });
+    const LoadedMap map = readMapFile(request.path, config_, classes_, ros::ok);
     has_same_parameters = map.has_same_parameters;
     try {
-      loaded = std::make_unique<Slam>(config_.slam, classes_, map.state);
+      loaded = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
     } catch (const std::exception& error) {
       throw InputError(request.path + ": " + error.what());
     }

@@ -114,6 +114,7 @@ class SlamNode {
   Warnings warnings_;
   std::size_t published_odometry_ = 0;
   std::size_t published_live_ = 1;
+  ros::WallTime next_trajectory_;
   ros::WallTime started_ = ros::WallTime::now();
   ros::Time last_time_;
   ros::WallTime last_time_change_ = ros::WallTime::now();

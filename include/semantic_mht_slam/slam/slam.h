@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/slam/back_end.h"
 #include "semantic_mht_slam/slam/frame.h"
@@ -17,8 +18,6 @@
 #include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
-
-class StateArchive;
 
 /// How the trajectory is estimated.
 enum class Method {
@@ -60,8 +59,10 @@ class Slam {
 
   /// Goes on where `state` was taken. Parameters may differ from those that it was made with, but for the method, the
   /// class table and the sizes of the pose graph's chunks; with the same ones the result is the same to the last bit as
-  /// without the interruption. Throws InputError if the state is broken, newer or does not fit.
-  Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state);
+  /// without the interruption. Throws InputError if the state is broken, newer or does not fit, or if reading is given
+  /// up.
+  Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state,
+       const KeepReading& keep_reading = {});
 
   /// Everything that is needed to go on from here.
   SlamState snapshot() const;
