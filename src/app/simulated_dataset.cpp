@@ -1,8 +1,10 @@
 #include "semantic_mht_slam/app/simulated_dataset.h"
 
+#include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/dataset.h"
 #include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/yaml_file.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -32,6 +34,16 @@ std::string formatLoopPairs(const SimulatedDrive& drive) {
 }
 
 }  // namespace
+
+Scenario loadScenario(const std::string& path, const std::vector<std::string>& overrides) {
+  std::vector<Setting> settings = readSettings(path);
+  for (const std::string& text : overrides) settings.push_back(parseOverride(text));
+  Scenario scenario;
+  Fields fields;
+  describe(scenario, fields);
+  applySettings(settings, fields);
+  return scenario;
+}
 
 void writeSimulatedDataset(const SimulatedDrive& drive, const ClassTable& classes, const std::string& folder) {
   Dataset dataset;

@@ -52,7 +52,12 @@ std::uint64_t StateArchive::varint(std::uint64_t value) {
   fail("a number has too many bytes");
 }
 
+void StateArchive::requireGoingOn() const {
+  if (keep_reading_ && !keep_reading_()) throw InputError("reading was given up");
+}
+
 std::size_t StateArchive::count(std::size_t elements) {
+  requireGoingOn();
   const std::uint64_t result = varint(elements);
   if (is_reading_ && result > input_.size()) fail("a list is longer than its state");
   return static_cast<std::size_t>(result);

@@ -27,6 +27,7 @@ void PaperChain::transfer(StateArchive& archive) {
 void PlaceRecognizer::transfer(StateArchive& archive, std::vector<PlacesOfSubmap> submaps) {
   if (archive.isReading()) {
     for (PlacesOfSubmap& submap : submaps) {
+      archive.requireGoingOn();
       if (paper_) paper_->add(submap.histogram, submap.keyframes);
       const std::size_t count = places_.size() + submap.keyframes.size();
       add(std::move(submap.keyframes), count);

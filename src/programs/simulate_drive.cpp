@@ -44,16 +44,6 @@ po::options_description makeOptions(Arguments& arguments) {
   return options;
 }
 
-Scenario loadScenario(const Arguments& arguments) {
-  std::vector<Setting> settings = readSettings(arguments.scenario);
-  for (const std::string& text : arguments.settings) settings.push_back(parseOverride(text));
-  Scenario scenario;
-  Fields fields;
-  describe(scenario, fields);
-  applySettings(settings, fields);
-  return scenario;
-}
-
 std::uint64_t seedOf(const Arguments& arguments) {
   const auto seed = parseInteger(arguments.seed);
   if (!seed || *seed < 0) throw InputError("--seed " + arguments.seed + ": a whole number of at least 0 was expected");
@@ -66,7 +56,7 @@ int run(int argc, char** argv) {
   if (arguments.output.empty()) throw InputError("--output is needed");
 
   const ClassTable classes = readClassTable(packageConfigFile("classes_semantic_kitti.yaml"));
-  const SimulatedDrive drive = simulateDrive(loadScenario(arguments), classes, seedOf(arguments));
+  const SimulatedDrive drive = simulateDrive(loadScenario(arguments.scenario, arguments.settings), classes, seedOf(arguments));
   StagedFolder output(arguments.output);
   writeSimulatedDataset(drive, classes, output.staging());
   // The bag is made from the files, so that both hold the same digits.

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "semantic_mht_slam/app/recording.h"
+#include "semantic_mht_slam/app/simulated_dataset.h"
 #include "semantic_mht_slam/common/error.h"
-#include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/simulation/simulator.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
 
@@ -111,14 +111,6 @@ LabelledDrive labelledDrive(const std::string& name, const Dataset& dataset, con
     drive.submaps.push_back({extractor.add(*submap), !revisited.empty(), is_good});
   }
   return drive;
-}
-
-Scenario loadScenario(const std::string& path) {
-  Scenario scenario;
-  Fields fields;
-  describe(scenario, fields);
-  applySettings(readSettings(path), fields);
-  return scenario;
 }
 
 }  // namespace

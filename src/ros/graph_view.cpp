@@ -9,7 +9,8 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kOutlineMargin_m = 3.0;
-constexpr double kLift_m = 1.0;  // above the trajectory, so that both are seen
+constexpr double kLift_m = 3.0;   // above the trajectory, so that both are seen
+constexpr double kPlace_m = 3.0;  // closures are short lines: seen from above a town, their places stand out
 
 std_msgs::ColorRGBA makeColor(float r, float g, float b, float a) {
   std_msgs::ColorRGBA color;
@@ -141,9 +142,11 @@ std::size_t acceptedClosures(const Slam& slam) {
 }
 
 visualization_msgs::MarkerArray toLoopMarkers(const Slam& slam, const LiveConfig& live, const std::string& map_frame) {
-  visualization_msgs::Marker accepted = makeLines("accepted", visualization_msgs::Marker::LINE_LIST, 0.6, map_frame);
+  visualization_msgs::Marker accepted = makeLines("accepted", visualization_msgs::Marker::LINE_LIST, 1.0, map_frame);
+  visualization_msgs::Marker places = makeLines("places", visualization_msgs::Marker::SPHERE_LIST, kPlace_m, map_frame);
+  places.scale.y = places.scale.z = kPlace_m;
   visualization_msgs::Marker refused = makeLines("refused", visualization_msgs::Marker::LINE_LIST, 0.3, map_frame);
-  accepted.color = kGreen;
+  accepted.color = places.color = kGreen;
   refused.color = kRed;
   if (slam.backEnd() != nullptr) {
     const std::vector<Pose>& T_map_keyframe = slam.backEnd()->keyframes().T_map_keyframe;
@@ -154,13 +157,14 @@ visualization_msgs::MarkerArray toLoopMarkers(const Slam& slam, const LiveConfig
         const Eigen::Vector3d& position_m = T_map_keyframe[static_cast<std::size_t>(keyframe)].translation_m;
         marker.points.push_back(toPoint(position_m + Eigen::Vector3d(0.0, 0.0, kLift_m)));
       }
+      if (record.is_accepted) places.points.push_back(accepted.points.back());
     }
   }
-  return makeArray({accepted, refused});
+  return makeArray({accepted, places, refused});
 }
 
 visualization_msgs::MarkerArray toSubmapMarkers(const Slam& slam, const std::string& map_frame) {
-  visualization_msgs::Marker outlines = makeLines("submaps", visualization_msgs::Marker::LINE_LIST, 0.3, map_frame);
+  visualization_msgs::Marker outlines = makeLines("submaps", visualization_msgs::Marker::LINE_LIST, 0.6, map_frame);
   const auto& submaps = slam.map().submaps();
   if (slam.backEnd() == nullptr || submaps.empty()) return makeArray({outlines});
   const KeyframeMap& map = slam.backEnd()->keyframes();

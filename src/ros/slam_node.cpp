@@ -9,6 +9,7 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kTrajectoryPause = 20.0;  // as long as it took, so that a long one takes no more than 5 % of the time
 constexpr std::uint32_t kSubscriberQueue = 1000;  // a burst until the callback moves it to the bounded queue
 
 double wallSeconds() {
@@ -50,13 +51,16 @@ SlamNode::~SlamNode() {
 }
 
 void SlamNode::subscribe() {
+  const auto at_once = ros::TransportHints().tcpNoDelay();  // or TCP may keep a message for 40 ms
   odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry>(
-      "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); });
+      "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); },
+      ros::VoidConstPtr(), at_once);
   initial_pose_subscriber_ = handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
       "initialpose", 1,
       [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) { expectAt(*message); });
   objects_subscriber_ = handle_.subscribe<SemanticObjectArray>(
-      "objects", kSubscriberQueue, [this](const SemanticObjectArrayConstPtr& message) { receive(message); });
+      "objects", kSubscriberQueue, [this](const SemanticObjectArrayConstPtr& message) { receive(message); },
+      ros::VoidConstPtr(), at_once);
 }
 
 void SlamNode::receive(const nav_msgs::OdometryConstPtr& message) {
@@ -158,18 +162,24 @@ void SlamNode::startAgain() {
 }
 
 void SlamNode::handle(const SemanticObjectArray& message) {
-  waiting_objects_.push_back({message, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});
+  const Stamp stamp = toStamp(message.header.stamp);
+  const bool falls_back = !last_objects_ || jump_.isBack(stamp, last_objects_);
+  last_objects_ = stamp;
+  waiting_objects_.push_back(
+      {message, falls_back, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});
   if (!jump_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
 }
 
 void SlamNode::retryObjects() {
   // Objects wait, in their order, for the transform of their sensor, and where they overtook a jump back in time, for
-  // the odometry that tells of it. Nothing waits for them.
+  // the odometry that tells of it. Nothing waits for them. A detector that is merely late does not wait: its stamps
+  // rise.
   while (!waiting_objects_.empty()) {
-    const auto& [message, deadline] = waiting_objects_.front();
+    const auto& [message, falls_back, deadline] = waiting_objects_.front();
     const std::optional<Pose> T_base_sensor = sensors_.find(message.header.frame_id);
     const bool may_wait = ros::WallTime::now() < deadline;
-    if (may_wait && (!T_base_sensor || jump_.isBack(toStamp(message.header.stamp), latestStamp()))) return;
+    const bool overtook_jump = falls_back && jump_.isBack(toStamp(message.header.stamp), latestStamp());
+    if (may_wait && (!T_base_sensor || overtook_jump)) return;
     if (T_base_sensor) {
       add(message, *T_base_sensor);
     } else {
@@ -193,6 +203,7 @@ void SlamNode::noteStatus() {
   estimator_.counters = slam_->counters();
   estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
   if (!slam_->isLocated()) estimator_.mode += ", lost";
+  if (slam_->isFollowing()) estimator_.mode += ", known place";
   estimator_.hypotheses = slam_->hypotheses().size();
   estimator_.submaps = slam_->map().submaps().size();
   estimator_.landmarks = publisher_.landmarks();
@@ -202,15 +213,21 @@ void SlamNode::noteStatus() {
 }
 
 void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
-  if (slam_->counters().odometry != published_odometry_) {
-    published_odometry_ = slam_->counters().odometry;
-    publisher_.publishTrajectory(slam_->trajectory());
-  }
+  std::unique_lock<TicketMutex> lock(slam_mutex_);
   if (live_.version() != published_live_) {
     published_live_ = live_.version();
     publisher_.publishMapMarkers(*slam_, live_.get());
   }
+  const ros::WallTime begin = ros::WallTime::now();
+  if (slam_->counters().odometry == published_odometry_ || begin < next_trajectory_) return;
+  published_odometry_ = slam_->counters().odometry;
+  const SlamPublisher::TrajectoryTurn turn = publisher_.takeTrajectoryTurn();
+  const std::vector<StampedPose> trajectory = slam_->trajectory();
+  const std::vector<Pose> odometry = publisher_.odometry();
+  lock.unlock();  // the messages of a long drive take a while to make
+  publisher_.publishTrajectory(turn, trajectory, odometry);
+  const ros::WallTime end = ros::WallTime::now();
+  next_trajectory_ = end + ros::WallDuration(kTrajectoryPause * (end - begin).toSec());
 }
 
 std::unique_ptr<SlamNode> makeSlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle,

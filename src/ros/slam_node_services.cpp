@@ -18,8 +18,13 @@ void SlamNode::advertiseServices() {
   services_.push_back(handle_.advertiseService("set_mode", &SlamNode::setMode, this));
 }
 
+std::unique_lock<TicketMutex> SlamNode::lockCaughtUp() {
+  queue_.waitUntilHandled([] { return ros::ok(); });
+  return std::unique_lock<TicketMutex>(slam_mutex_);
+}
+
 bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  const auto lock = lockCaughtUp();
   const std::size_t before = slam_->map().submaps().size();
   slam_->finish();
   const std::size_t submaps = slam_->map().submaps().size();
@@ -38,7 +43,7 @@ bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Resp
 }
 
 bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  const auto lock = lockCaughtUp();
   const std::size_t landmarks = publisher_.landmarks();
   waiting_objects_.clear();
   startAgain();
@@ -51,7 +56,7 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
   SavedMap map;
   {
-    const std::lock_guard<TicketMutex> lock(slam_mutex_);
+    const auto lock = lockCaughtUp();
     map = mapOf(*slam_);
   }
   try {
@@ -70,10 +75,10 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
   std::unique_ptr<Slam> loaded;
   bool has_same_parameters = true;
   try {
-    const LoadedMap map = readMapFile(request.path, config_, classes_, [] { return ros::ok(); });
+    const LoadedMap map = readMapFile(request.path, config_, classes_, ros::ok);
     has_same_parameters = map.has_same_parameters;
     try {
-      loaded = std::make_unique<Slam>(config_.slam, classes_, map.state);
+      loaded = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
     } catch (const std::exception& error) {
       throw InputError(request.path + ": " + error.what());
     }
@@ -81,7 +86,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
     response.message = std::string(error.what()) + "; the running map stays";
     return true;
   }
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  const auto lock = lockCaughtUp();
   slam_ = std::move(loaded);
   is_loaded_ = true;
   if (is_localization_wanted_ && !slam_->map().submaps().empty()) slam_->localize();
@@ -97,7 +102,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
 }
 
 bool SlamNode::setMode(SetMode::Request& request, SetMode::Response& response) {
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  const auto lock = lockCaughtUp();
   if (request.mode == SetMode::Request::MAPPING) {
     slam_->resumeMapping();
     is_localization_wanted_ = false;
@@ -127,7 +132,7 @@ void SlamNode::expectAt(const geometry_msgs::PoseWithCovarianceStamped& message)
     return;
   }
   const double stddev_m = std::sqrt(std::max({0.0, message.pose.covariance[0], message.pose.covariance[7]}));
-  const std::lock_guard<TicketMutex> lock(slam_mutex_);
+  const auto lock = lockCaughtUp();
   if (!slam_->expectAt(T_map_base, stddev_m)) {
     ROS_WARN("initialpose is ignored: the node does not localize, or has no odometry yet");
   }

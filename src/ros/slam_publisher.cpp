@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/ros/slam_publisher.h"
 
+#include <stdexcept>
+
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -76,9 +78,11 @@ void SlamPublisher::publishMapMarkers(const Slam& slam, const LiveConfig& live) 
   submaps_publisher_.publish(toSubmapMarkers(slam, config_.map_frame));
 }
 
-void SlamPublisher::publishTrajectory(const std::vector<StampedPose>& trajectory) {
+void SlamPublisher::publishTrajectory(const TrajectoryTurn& turn, const std::vector<StampedPose>& trajectory,
+                                      const std::vector<Pose>& T_odom_base) {
+  if (!turn.owns_lock()) throw std::logic_error("SlamPublisher: a trajectory is published by who has the turn");
   trajectory_publisher_.publish(toPath(trajectory, config_.map_frame));
-  odometry_publisher_.publish(toOdometryMarkers(odometry_, config_.map_frame));
+  odometry_publisher_.publish(toOdometryMarkers(T_odom_base, config_.map_frame));
 }
 
 void SlamPublisher::startAgain(const Slam& slam) {
@@ -91,7 +95,7 @@ void SlamPublisher::startAgain(const Slam& slam) {
   map_ = toMessage(0, config_.map_frame, classes_, {}, 0);
   map_publisher_.publish(map_);
   publishMapMarkers(slam, {});
-  publishTrajectory({});
+  publishTrajectory(takeTrajectoryTurn(), {}, {});
   hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, 0, {}));
 }
 

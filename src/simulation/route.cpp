@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/simulation/route.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -29,7 +30,8 @@ class RoutePlanner {
 
   std::vector<Leg> plan() {
     drive(static_cast<int>(rng_.index(driven_.size())));
-    while (total_m_ < length_m_) {
+    const double planned_m = config_.round_m > 0.0 ? std::min(config_.round_m, length_m_) : length_m_;
+    while (total_m_ < planned_m) {
       const LegKind kind = mostBehind();
       if (kind == LegKind::kNew) {
         explore();
@@ -37,6 +39,7 @@ class RoutePlanner {
         revisit(kind);
       }
     }
+    if (total_m_ < length_m_) repeat();
     std::vector<Leg> legs;
     for (const int id : history_) legs.push_back(legOf(id));
     return legs;
@@ -157,6 +160,17 @@ class RoutePlanner {
     }
     for (const int id : best.ids) drive(id);
     return chosen;
+  }
+
+  /// Goes back to the beginning and makes the drive again, round after round.
+  void repeat() {
+    std::vector<double> lengths;
+    for (int id = 0; id < router_.count(); ++id) lengths.push_back(router_.length(id));
+    const auto back = router_.find(history_.back(), history_.front(), lengths);
+    if (!back) throw InputError("route.round: the network has no way back; raise network.columns or network.rows");
+    std::vector<int> round = back->ids;
+    round.insert(round.end(), history_.begin() + 1, history_.end());
+    for (std::size_t i = 0; total_m_ < length_m_; i = (i + 1) % round.size()) drive(round[i]);
   }
 
   const StreetNetwork& network_;

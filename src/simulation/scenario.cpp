@@ -54,7 +54,9 @@ void describe(TrafficConfig& c, Fields& fields) {
 }
 
 void describe(RouteConfig& c, Fields& fields) {
-  fields.add("length", c.length_m, "m", {50, 100000}, "Length of the drive.");
+  fields.add("length", c.length_m, "m", {50, 1000000}, "Length of the drive.");
+  fields.add("round", c.round_m, "m", {0, 100000},
+             "Length after which the drive goes back to where it began and is made again; 0: never.");
   fields.add("same_direction_fraction", c.same_direction_fraction, "", {0, 0.9},
              "Share of the drive on streets that were driven before in the same direction.");
   fields.add("opposite_direction_fraction", c.opposite_direction_fraction, "", {0, 0.9},

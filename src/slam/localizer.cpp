@@ -21,6 +21,9 @@ void describe(LocalizerConfig& config, Fields& fields) {
              "Two finds that confirm each other are so far apart,");
   fields.add("max_apart", config.max_apart_m, "m", {1.0, 1000.0}, "and no further.");
   fields.add("lost_after", config.lost_after_m, "m", {1.0, 10000.0}, "Lost after this distance without a fix.");
+  fields.add("known_passes", config.known_passes, "", {0, 1000},
+             "A place that was mapped so many times is known: while there, the vehicle localizes, and the map does not "
+             "grow; 0: never.");
 }
 
 void Localizer::expectAt(const Pose& T_map_odom, double stddev_m) {

@@ -11,6 +11,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kHuberSigma = 2.0;
+constexpr double kSamePlace_m = 10.0;
 
 /// Mean of what several keyframes say of a landmark.
 struct EarlierLandmark {
@@ -32,19 +33,25 @@ struct Pass {
   std::vector<AlignmentPoint> points;
 };
 
-/// Runs of successive keyframes among the first `end` that are near the expected pose.
-std::vector<std::vector<int>> runsNear(const KeyframeMap& map, std::size_t end, const AlignmentPrior& prior,
-                                       const RevisitConfig& config) {
-  const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
+/// Runs of successive keyframes among the first `end` that are near a position.
+std::vector<std::vector<int>> runsWithin(double radius_m, const Eigen::Vector3d& position_m, const KeyframeMap& map,
+                                         std::size_t end) {
   std::vector<std::vector<int>> runs;
   for (std::size_t k = 0; k < end; ++k) {
-    const Eigen::Vector3d offset = map.T_map_keyframe[k].translation_m - prior.T_a_b.translation_m;
+    const Eigen::Vector3d offset = map.T_map_keyframe[k].translation_m - position_m;
     if (offset.head<2>().norm() > radius_m) continue;
     const int keyframe = static_cast<int>(k);
     if (runs.empty() || runs.back().back() + 1 != keyframe) runs.emplace_back();
     runs.back().push_back(keyframe);
   }
   return runs;
+}
+
+/// The same near the pose that is expected.
+std::vector<std::vector<int>> runsNear(const KeyframeMap& map, std::size_t end, const AlignmentPrior& prior,
+                                       const RevisitConfig& config) {
+  const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
+  return runsWithin(radius_m, prior.T_a_b.translation_m, map, end);
 }
 
 Pass makePass(const KeyframeMap& map, const std::vector<int>& keyframes) {
@@ -161,6 +168,10 @@ void describe(RevisitConfig& config, Fields& fields) {
   fields.add("height_stddev", config.height_stddev_m, "m", {0.001, 100.0},
              "Further deviation of an object's height: from elsewhere, another part of it is seen.");
   fields.group("alignment", config.alignment);
+}
+
+int passesAt(const KeyframeMap& map, const Eigen::Vector3d& position_m) {
+  return static_cast<int>(runsWithin(kSamePlace_m, position_m, map, map.keyframes.size()).size());
 }
 
 AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config) {

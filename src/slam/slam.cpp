@@ -77,7 +77,10 @@ void Slam::processReadyFrames() {
       driven_m_ += (frame->T_odom_base.translation_m - latest_frame_->T_odom_base.translation_m).norm();
     }
     if (localizer_) localizeBy(*frame);
-    if (mapper_ && !localizer_) map(*frame);
+    if (mapper_ && !localizer_) {
+      map(*frame);
+      if (is_place_known_) follow();
+    }
     latest_frame_ = std::move(frame);
   }
 }
@@ -101,10 +104,12 @@ void Slam::take(Submap submap) {
   auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, {odometry_noise_, detector},
                                     keyframe_config_);
   submap_frames_.clear();
+  const std::size_t first_new = back_end_->keyframes().keyframes.size();
   const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap, prediction_);
   prediction_ = std::move(next_prediction_);
   map_.add(std::make_shared<const Submap>(std::move(submap)));
   for (const auto& [gone, survivor] : merged) map_.merge(gone, survivor);
+  is_place_known_ = isKnownSince(first_new);
 }
 
 EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {

@@ -11,6 +11,9 @@ namespace {
 /// Driven between two sessions, for whoever takes what was driven lately for one pass.
 constexpr double kBetweenSessions_m = 1000.0;
 
+/// Followed without a fix before the place counts as one that changed, and is mapped again.
+constexpr double kFollowed_m = 20.0;
+
 constexpr double kMaxPause_s = 60.0;
 constexpr double kMaxSpeed_m_s = 60.0;
 
@@ -32,6 +35,31 @@ void Slam::localize() {
     localizer_->expectAt(map_.submaps().empty() ? T_map_odom : back_end_->T_map_odom(), 0.0);
   }
   is_mapping_wanted_ = false;
+  is_following_ = false;
+}
+
+bool Slam::isKnown(const Eigen::Vector3d& position_m) const {
+  const int passes = localizer_config_.known_passes;
+  return passes > 0 && passesAt(back_end_->keyframes(), position_m) >= passes;
+}
+
+bool Slam::isKnownSince(std::size_t first_keyframe) const {
+  const auto& closures = back_end_->closures();
+  const bool is_tied = std::any_of(closures.rbegin(), closures.rend(), [&](const LoopClosureRecord& closure) {
+    return closure.is_accepted && closure.query_keyframe >= static_cast<int>(first_keyframe);
+  });
+  if (!is_tied) return false;
+  const std::vector<Pose>& T_map_keyframe = back_end_->keyframes().T_map_keyframe;
+  return std::all_of(T_map_keyframe.begin() + static_cast<std::ptrdiff_t>(first_keyframe), T_map_keyframe.end(),
+                     [&](const Pose& pose) { return isKnown(pose.translation_m); });
+}
+
+void Slam::follow() {
+  endSubmap();
+  is_place_known_ = false;
+  localizer_.emplace(localizer_config_);
+  localizer_->expectAt(back_end_->T_map_odom(), 0.0);
+  is_following_ = true;
 }
 
 void Slam::resumeMapping() {
@@ -41,6 +69,7 @@ void Slam::resumeMapping() {
   back_end_->goOnAt(*localizer_->T_map_odom(), driven_m_);
   mapper_->forgetSurroundings();
   localizer_.reset();
+  is_following_ = false;
 }
 
 void Slam::beginSession() {
@@ -50,6 +79,7 @@ void Slam::beginSession() {
   const bool has_map = back_end_ && !map_.submaps().empty();
   sessions_.push_back({odometry_.size(), has_map ? back_end_->keyframes().keyframes.size() : 0, {}});
   localizer_.reset();
+  is_place_known_ = is_following_ = false;
   if (has_map) localizer_.emplace(localizer_config_);
 }
 
@@ -64,7 +94,10 @@ void Slam::localizeBy(const Frame& frame) {
   for (Detection& detection : corrected.detections) detection = mapper_->corrected(detection);
   if (localizer_->add(corrected, *back_end_)) {
     sessions_.back().fixes.push_back(localizer_->fix());
-    if (is_mapping_wanted_) resumeMapping();
+    is_following_ = is_mapping_wanted_ && isKnown(localizer_->fix().T_map_base.translation_m);
+    if (is_mapping_wanted_ && !is_following_) resumeMapping();
+  } else if (is_following_ && localizer_->sinceFix_m() > kFollowed_m) {
+    resumeMapping();
   }
 }
 

@@ -95,7 +95,8 @@ SlamState Slam::snapshot() const {
   return state;
 }
 
-Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state) : Slam(config, classes) {
+Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state, const KeepReading& keep_reading)
+    : Slam(config, classes) {
   for (const Section& section : sections()) {
     const auto found = std::find_if(state.sections.begin(), state.sections.end(),
                                     [&](const StateSection& other) { return other.name == section.name; });
@@ -104,7 +105,7 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState&
       throw InputError(std::string("the section '") + section.name + "' has version " + std::to_string(found->version) +
                        ", this program reads version " + std::to_string(section.version));
     }
-    StateArchive archive(found->bytes);
+    StateArchive archive(found->bytes, keep_reading);
     (this->*section.transfer)(archive);
     archive.requireEnd();
   }

@@ -72,6 +72,7 @@ TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
   LiveConfig live;
   live.refused_closures = true;
   EXPECT_EQ(find(toLoopMarkers(slam, live, "map"), "accepted").points.size(), 2 * accepted);
+  EXPECT_EQ(find(toLoopMarkers(slam, live, "map"), "places").points.size(), accepted);
   EXPECT_EQ(find(toLoopMarkers(slam, live, "map"), "refused").points.size(), 2 * (all - accepted));
   EXPECT_TRUE(find(toLoopMarkers(slam, {}, "map"), "refused").points.empty());
   const std::vector<LoopClosure> messages = toLoopClosures(slam, 0, "map");

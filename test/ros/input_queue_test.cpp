@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/ros/input_queue.h"
 
+#include <atomic>
+#include <chrono>
 #include <thread>
 
 #include <boost/make_shared.hpp>
@@ -32,6 +34,45 @@ TEST(InputQueueTest, ClosingWakesAWaitingWorker) {
   queue.close();
   worker.join();
   EXPECT_FALSE(got_message);
+}
+
+TEST(InputQueueTest, WaitingEndsWhenAllThatWasThereIsHandledAndNotBefore) {
+  InputQueue queue(3);
+  for (std::uint32_t i = 0; i < 5; ++i) queue.push(odometryWithSequence(i));  // two are dropped
+  std::atomic<bool> is_waiting{false};
+  std::atomic<bool> is_handled{false};
+  std::thread waiting([&] {
+    queue.waitUntilHandled([&] { return is_waiting = true; });
+    is_handled = true;
+  });
+  while (!is_waiting) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    queue.pop();
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    EXPECT_FALSE(is_handled) << "message " << i << " is still being handled";
+  }
+  queue.push(odometryWithSequence(5));  // came later: nobody waits for it
+  queue.pop();
+  waiting.join();
+  EXPECT_TRUE(is_handled);
+}
+
+TEST(InputQueueTest, WaitingForAnEmptyQueueEndsAtOnce) {
+  InputQueue queue(3);
+  bool was_asked = false;
+  queue.waitUntilHandled([&] { return was_asked = true; });
+  EXPECT_FALSE(was_asked);
+}
+
+TEST(InputQueueTest, WaitingIsGivenUpWhenTheQueueIsClosedOrNobodyWantsToWait) {
+  InputQueue queue(3);
+  queue.push(odometryWithSequence(0));
+  int asked = 0;
+  queue.waitUntilHandled([&] { return ++asked < 3; });
+  EXPECT_EQ(asked, 3);
+  std::thread waiting([&] { queue.waitUntilHandled([] { return true; }); });
+  queue.close();
+  waiting.join();
 }
 
 }  // namespace

@@ -218,6 +218,32 @@ TEST_F(SlamNodeTest, ObjectsThatOvertakeTheOdometryOfAJumpBelongToTheNewMap) {
   EXPECT_EQ(toStamp(trees_.back().header.stamp), begin);
 }
 
+TEST_F(SlamNodeTest, ObjectsThatAreMerelyLateWaitForNothing) {
+  ros::Publisher odometry = handle_.advertise<nav_msgs::Odometry>("odometry", 100);
+  ros::Publisher objects = handle_.advertise<SemanticObjectArray>("objects", 100);
+  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10.0);
+  while ((odometry.getNumSubscribers() == 0 || objects.getNumSubscribers() == 0) && ros::WallTime::now() < deadline) {
+    ros::WallDuration(0.05).sleep();
+  }
+  const Stamp begin = 200 * kOrigin;
+  const auto sendObjects = [&](int i) {
+    objects.publish(toMessage(begin + i * kOrigin / 10, "base_link", {}, makeTwoClasses()));
+  };
+  sendObjects(0);
+  for (int i = 0; i <= 80; ++i) {
+    odometry.publish(toOdometry({begin + i * kOrigin / 10, Pose::identity()}, "odom", "base_link"));
+    ros::WallDuration(0.01).sleep();
+  }
+  ros::WallDuration(0.5).sleep();
+  const std::size_t before = trees_.size();
+  for (int i = 1; i <= 5; ++i) sendObjects(i);  // more than 7 s late
+  const ros::WallTime sent = ros::WallTime::now();
+  while (trees_.size() < before + 5 && ros::WallTime::now() < sent + ros::WallDuration(10.0)) {
+    ros::WallDuration(0.01).sleep();
+  }
+  EXPECT_LT((ros::WallTime::now() - sent).toSec(), 1.0);
+}
+
 /// Runs a second node with one wrong parameter and returns its exit code.
 int exitCodeWith(const std::string& argument) {
   const std::string program = std::string(SMHT_PROGRAM_DIR) + "/slam_node";

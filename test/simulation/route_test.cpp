@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/simulation/route.h"
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -85,6 +86,26 @@ TEST(RouteTest, TooLongForTheNetworkIsAnErrorThatNamesTheField) {
   RouteConfig config;
   config.length_m = 100000.0;
   EXPECT_NE(errorOf(network, config).find("route.length"), std::string::npos) << errorOf(network, config);
+}
+
+TEST(RouteTest, RoundsRepeatTheSameStreetsAndStayConnected) {
+  RouteConfig config;
+  config.length_m = 20000.0;  // longer than all streets
+  config.round_m = 1500.0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const StreetNetwork network = buildStreetNetwork({}, Rng(seed));
+    const std::vector<Leg> legs = planRoute(network, config, config.length_m, Rng(seed));
+    const std::vector<Leg> first = planRoute(network, {}, config.round_m, Rng(seed));
+    ASSERT_TRUE(std::equal(first.begin(), first.end(), legs.begin())) << "the first round is a drive of its own";
+    const auto again = std::search(legs.begin() + 1, legs.end(), first.begin(), first.end());
+    ASSERT_NE(again, legs.end());
+    const auto round = static_cast<std::size_t>(again - legs.begin());
+    for (std::size_t i = round; i < legs.size(); ++i) EXPECT_EQ(legs[i], legs[i - round]) << "seed " << seed;
+    for (std::size_t i = 1; i < legs.size(); ++i) {
+      EXPECT_EQ(nodeAt(network, legs[i - 1], true), nodeAt(network, legs[i], false));
+      EXPECT_NE(legs[i - 1].street, legs[i].street);
+    }
+  }
 }
 
 TEST(RouteTest, NoWayToTurnRoundIsAnErrorThatNamesTheField) {

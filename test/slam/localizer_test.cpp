@@ -101,6 +101,69 @@ TEST_P(LocalizerTest, ElsewhereItStaysLost) {
   EXPECT_FALSE(slam_.isLocated());
 }
 
+/// Rounds of the square, each place known after two.
+class KnownPlaceTest : public testing::TestWithParam<int> {
+ protected:
+  explicit KnownPlaceTest(int leaves_m = SquareDrive::kNever_m)
+      : drive_(static_cast<std::uint64_t>(GetParam()), leaves_m), slam_(config(), makeStreetClasses()) {}
+
+  static SlamConfig config() {
+    SlamConfig config = defaultsOf(Method::kDpmhm);
+    config.localization.known_passes = 2;
+    return config;
+  }
+
+  double errorAt(int i) const {
+    return (slam_.latestPose()->T_world_base.translation_m - drive_.truthAt(i).translation_m).head<2>().norm();
+  }
+
+  std::size_t keyframes() const { return slam_.backEnd()->keyframes().keyframes.size(); }
+
+  SquareDrive drive_;
+  Slam slam_;
+};
+
+TEST_P(KnownPlaceTest, TheMapDoesNotGrowInPlacesThatAreKnownAndThePoseStaysGood) {
+  drive_.feed(slam_, 0, 1200);
+  EXPECT_TRUE(slam_.isFollowing());
+  EXPECT_FALSE(slam_.isLocalizing()) << "nobody asked for that";
+  const std::size_t before = keyframes();
+  for (int i = 1200; i < 2400; ++i) {
+    drive_.feed(slam_, i, i + 1);
+    EXPECT_LT(errorAt(i), 1.5) << i;
+  }
+  EXPECT_EQ(keyframes(), before);
+  EXPECT_EQ(slam_.trajectory().size(), 2400U);
+}
+
+class LeavingKnownPlaceTest : public KnownPlaceTest {
+ protected:
+  LeavingKnownPlaceTest() : KnownPlaceTest(1560) {}
+};
+
+TEST_P(LeavingKnownPlaceTest, NewPlacesAreMappedAtOnce) {
+  drive_.feed(slam_, 0, 1550);
+  ASSERT_TRUE(slam_.isFollowing());
+  const std::size_t before = keyframes();
+  drive_.feed(slam_, 1550, 1850);  // 290 m straight on, where the rounds turned
+  EXPECT_FALSE(slam_.isFollowing());
+  EXPECT_TRUE(slam_.isLocated());
+  slam_.finish();
+  EXPECT_GT(keyframes(), before + 20);
+  EXPECT_LT(errorAt(1849), 3.0);
+}
+
+TEST(KnownPlaceOffTest, WithoutAnyWantedEverythingIsMapped) {
+  SlamConfig config = defaultsOf(Method::kDpmhm);
+  config.localization.known_passes = 0;
+  Slam slam(config, makeStreetClasses());
+  SquareDrive(1).feed(slam, 0, 1500);
+  EXPECT_FALSE(slam.isFollowing());
+  EXPECT_GT(slam.map().submaps().back()->end, SquareDrive::stampAt(1400));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, KnownPlaceTest, testing::Values(1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(Seeds, LeavingKnownPlaceTest, testing::Values(1, 2, 3));
 INSTANTIATE_TEST_SUITE_P(Seeds, LocalizerTest, testing::Values(1, 2, 3));
 
 TEST(LocalizerErrorTest, WithoutAMapThereIsNothingToLocalizeIn) {

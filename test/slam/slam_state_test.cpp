@@ -115,6 +115,23 @@ TEST(SlamStateErrorTest, BrokenStatesAreRefusedWithAReason) {
   }
 }
 
+TEST(SlamStateErrorTest, ReadingCanBeGivenUpAtAnyTime) {
+  const SquareDrive drive(4);
+  const ClassTable classes = makeStreetClasses();
+  const SlamConfig config = defaultsOf(Method::kDpmhm);
+  Slam slam(config, classes);
+  drive.feed(slam, 0, 200);
+  const SlamState state = slam.snapshot();
+  int asked = 0;
+  Slam(config, classes, state, [&] { return ++asked > 0; });
+  ASSERT_GT(asked, 100) << "asked too seldom to be quick";
+  for (int last = 1; last < asked; last += asked / 20) {
+    int so_far = 0;
+    expectInputError([&] { Slam(config, classes, state, [&] { return ++so_far < last; }); }, {"given up"});
+    EXPECT_EQ(so_far, last) << "went on after it was told to give up";
+  }
+}
+
 TEST(SlamStateErrorTest, AnotherMethodOrAnotherGraphIsRefused) {
   const ClassTable classes = makeStreetClasses();
   SlamConfig config = defaultsOf(Method::kDpmhm);

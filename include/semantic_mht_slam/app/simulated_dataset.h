@@ -1,11 +1,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/simulation/simulator.h"
 
 namespace semantic_mht_slam {
+
+/// A scenario file with `overrides` (KEY=VALUE). Throws InputError or ConfigError.
+Scenario loadScenario(const std::string& path, const std::vector<std::string>& overrides = {});
 
 /// Writes a simulated drive as a data-set folder (made if missing) with its truth: objects_landmark.csv
 /// (frame,landmark; a row a detection, -1 clutter, -2 moving), landmarks.csv (landmark,class,x,y,z in the map frame)

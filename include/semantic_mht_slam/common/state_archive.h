@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -19,6 +20,9 @@
 
 namespace semantic_mht_slam {
 
+/// Asked now and then while something long is read; false: give up.
+using KeepReading = std::function<bool()>;
+
 /// Values to bytes and back, without loss. One function a type, `transfer(archive, value)` or a member
 /// `transfer(archive)`, serves both directions, so that what is written and what is read cannot differ; a writing
 /// archive changes no value. Integers take as many bytes as they need, a double eight, a square matrix only what its
@@ -31,12 +35,17 @@ class StateArchive {
   StateArchive() = default;
 
   /// Reads; `bytes` must live as long as the archive.
-  explicit StateArchive(std::string_view bytes) : is_reading_(true), input_(bytes) {}
+  explicit StateArchive(std::string_view bytes, KeepReading keep_reading = {})
+      : is_reading_(true), input_(bytes), keep_reading_(std::move(keep_reading)) {}
 
   bool isReading() const { return is_reading_; }
 
   /// What was written.
   const std::string& written() const { return output_; }
+
+  /// Throws InputError if reading is to be given up. Called for every list that is read; whoever does something long
+  /// with what was read calls it meanwhile.
+  void requireGoingOn() const;
 
   /// Throws InputError unless everything was read.
   void requireEnd() const;
@@ -111,6 +120,7 @@ class StateArchive {
 
   bool is_reading_ = false;
   std::string_view input_;
+  KeepReading keep_reading_;
   std::string output_;
 };
 

@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <variant>
@@ -23,8 +24,12 @@ class InputQueue {
 
   void push(InputMessage message);
 
-  /// Waits for a message; empty once the queue is closed.
+  /// Waits for a message; empty once the queue is closed. Who asks for the next message has handled the one before.
   std::optional<InputMessage> pop();
+
+  /// Waits until all that was pushed before the call is handled or dropped, the queue is closed, or `keep_waiting`,
+  /// which is asked now and then, says no.
+  void waitUntilHandled(const std::function<bool()>& keep_waiting);
 
   /// Wakes the worker for good. Messages that still wait are given up.
   void close();
@@ -39,7 +44,10 @@ class InputQueue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<InputMessage> messages_;
+  std::size_t pushed_ = 0;
   std::size_t dropped_ = 0;
+  std::size_t taken_ = 0;
+  std::size_t handled_ = 0;
   bool is_closed_ = false;
 };
 

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/slam/slam.h"
@@ -36,9 +36,6 @@ struct LoadedMap {
   std::size_t landmarks = 0;
   bool has_same_parameters = true;  ///< of the estimator
 };
-
-/// Asked now and then while a file is read; false: give up.
-using KeepReading = std::function<bool()>;
 
 /// Reads a map file. Throws InputError that names the file and the reason: no such file, truncated or no bag, no map
 /// file, made by a newer program, broken, for another class table or another method, or given up.

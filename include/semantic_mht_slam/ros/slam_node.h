@@ -31,8 +31,8 @@ namespace semantic_mht_slam {
 
 /// The ROS node, in a process of its own or in that of a nodelet manager. Subscribers put messages into a bounded
 /// queue; one worker thread owns the estimator, takes them out and publishes; a wall timer publishes `trajectory` when
-/// it has changed, so that the last one goes out even if the clock of a replay has stopped. Services change the
-/// estimator between two messages.
+/// it has changed, so that the last one goes out even if the clock of a replay has stopped. Services come
+/// after the messages that the node received before the request, and change the estimator between two messages.
 class SlamNode {
  public:
   SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle, const SystemConfig& config,
@@ -45,9 +45,10 @@ class SlamNode {
   SlamNode& operator=(const SlamNode&) = delete;
 
  private:
-  /// Objects whose sensor is not known to tf yet.
+  /// Objects whose sensor is not known to tf yet, or that may belong to odometry that has not come yet.
   struct WaitingObjects {
     SemanticObjectArray message;
+    bool falls_back = false;  ///< behind the objects before
     ros::WallTime deadline;
   };
 
@@ -72,6 +73,9 @@ class SlamNode {
   void startAgain();
 
   // Services, timers and diagnostics, in a spinner thread.
+
+  /// The estimator for a service: it has seen every message that the node received before the request.
+  std::unique_lock<TicketMutex> lockCaughtUp();
   bool finishSubmap(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void expectAt(const geometry_msgs::PoseWithCovarianceStamped& message);
@@ -96,6 +100,7 @@ class SlamNode {
   bool is_localization_wanted_ = false;
   bool is_loaded_ = false;  ///< the map is from a file, and no odometry has come since
   std::deque<WaitingObjects> waiting_objects_;
+  std::optional<Stamp> last_objects_;  ///< the newest to arrive
   EstimatorStatus estimator_;
 
   // Guarded by `status_mutex_`, which is never held for long: diagnostics go out however busy the estimator is.
@@ -109,6 +114,7 @@ class SlamNode {
   Warnings warnings_;
   std::size_t published_odometry_ = 0;
   std::size_t published_live_ = 1;
+  ros::WallTime next_trajectory_;
   ros::WallTime started_ = ros::WallTime::now();
   ros::Time last_time_;
   ros::WallTime last_time_change_ = ros::WallTime::now();

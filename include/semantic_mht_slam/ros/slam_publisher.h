@@ -1,6 +1,8 @@
 #pragma once
 
+#include <mutex>
 #include <optional>
+#include <vector>
 
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -32,8 +34,18 @@ class SlamPublisher {
   /// Landmarks of the newest map, loop closures and submaps once more, drawn as `live` says.
   void publishMapMarkers(const Slam& slam, const LiveConfig& live);
 
-  /// Also what the odometry alone says.
-  void publishTrajectory(const std::vector<StampedPose>& trajectory);
+  /// Who holds it publishes the next trajectory.
+  using TrajectoryTurn = std::unique_lock<std::mutex>;
+
+  /// Waits for the trajectory that is being published.
+  TrajectoryTurn takeTrajectoryTurn() { return TrajectoryTurn(trajectory_mutex_); }
+
+  /// Also what the odometry alone says. The estimator may change meanwhile, for whoever took the turn before that.
+  void publishTrajectory(const TrajectoryTurn& turn, const std::vector<StampedPose>& trajectory,
+                         const std::vector<Pose>& T_odom_base);
+
+  /// T_odom_base about once a metre.
+  const std::vector<Pose>& odometry() const { return odometry_; }
 
   /// A new map begins with `slam`: empties what is latched.
   void startAgain(const Slam& slam);
@@ -66,7 +78,8 @@ class SlamPublisher {
   std::size_t published_submaps_ = 0;
   std::size_t published_closures_ = 0;
   std::size_t loops_ = 0;
-  std::vector<Pose> odometry_;  ///< about one a metre
+  std::vector<Pose> odometry_;
+  std::mutex trajectory_mutex_;
   SemanticMap map_;
 };
 

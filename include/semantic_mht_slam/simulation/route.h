@@ -10,7 +10,8 @@
 namespace semantic_mht_slam {
 
 /// Plans a drive of at least `length_m` metres that never turns on a street. The shares of revisited streets follow the
-/// configuration: whichever kind of street is most behind its share is sought next.
+/// configuration: whichever kind of street is most behind its share is sought next. After `round` metres the drive goes
+/// back to its start and is made again.
 /// Throws InputError naming the field if the network has too few streets or no way to turn round.
 std::vector<Leg> planRoute(const StreetNetwork& network, const RouteConfig& config, double length_m, Rng rng);
 

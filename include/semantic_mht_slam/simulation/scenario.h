@@ -85,6 +85,7 @@ struct TrafficConfig {
 /// Where and how the sensor is driven.
 struct RouteConfig {
   double length_m = 3000.0;
+  double round_m = 0.0;
   double same_direction_fraction = 0.18;
   double opposite_direction_fraction = 0.12;
   double min_loop_m = 300.0;

@@ -19,6 +19,7 @@ struct LocalizerConfig {
   double min_apart_m = 8.0;
   double max_apart_m = 40.0;
   double lost_after_m = 100.0;
+  int known_passes = 8;
 };
 
 void describe(LocalizerConfig& config, Fields& fields);
@@ -48,6 +49,9 @@ class Localizer {
 
   /// Correction of the odometry; empty before the first fix.
   const std::optional<Pose>& T_map_odom() const { return T_map_odom_; }
+
+  /// Driven since the newest fix, or since the pose was told.
+  double sinceFix_m() const { return driven_m_ - fixed_m_; }
 
   /// The newest fix; only after one.
   const MapFix& fix() const { return *fix_; }

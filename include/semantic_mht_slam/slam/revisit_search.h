@@ -36,6 +36,10 @@ struct KeyframeMap {
   std::vector<Pose> T_map_keyframe;
 };
 
+/// How often the surroundings of a position were driven through: runs of successive keyframes within 10 m, seen from
+/// above.
+int passesAt(const KeyframeMap& map, const Eigen::Vector3d& position_m);
+
 /// How far the pose may be off from the earlier map after `drifted_m` of driving since it was last tied to it; in the
 /// frame of `T_map_base`.
 AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config);

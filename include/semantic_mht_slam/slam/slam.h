@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/slam/back_end.h"
 #include "semantic_mht_slam/slam/frame.h"
@@ -17,8 +18,6 @@
 #include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
-
-class StateArchive;
 
 /// How the trajectory is estimated.
 enum class Method {
@@ -60,8 +59,10 @@ class Slam {
 
   /// Goes on where `state` was taken. Parameters may differ from those that it was made with, but for the method, the
   /// class table and the sizes of the pose graph's chunks; with the same ones the result is the same to the last bit as
-  /// without the interruption. Throws InputError if the state is broken, newer or does not fit.
-  Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state);
+  /// without the interruption. Throws InputError if the state is broken, newer or does not fit, or if reading is given
+  /// up.
+  Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state,
+       const KeepReading& keep_reading = {});
 
   /// Everything that is needed to go on from here.
   SlamState snapshot() const;
@@ -107,7 +108,10 @@ class Slam {
   bool expectAt(const Pose& T_map_base, double stddev_m);
 
   /// True if the map is not added to: by choice, or because the vehicle is not found yet.
-  bool isLocalizing() const { return localizer_.has_value(); }
+  bool isLocalizing() const { return localizer_.has_value() && !is_following_; }
+
+  /// True if the map is not added to because the place was mapped `localization.known_passes` times.
+  bool isFollowing() const { return is_following_; }
 
   /// True if the vehicle knows where it is in the map.
   bool isLocated() const { return !localizer_ || localizer_->isLocated(); }
@@ -158,6 +162,9 @@ class Slam {
   void map(const Frame& frame);
   void localizeBy(const Frame& frame);
   void endSubmap();
+  void follow();
+  bool isKnown(const Eigen::Vector3d& position_m) const;
+  bool isKnownSince(std::size_t first_keyframe) const;
   void take(Submap submap);
   EarlierMap earlierMap(const Pose& T_odom_submap);
   std::vector<CorrectionAnchor> correctionAnchors(std::size_t session) const;
@@ -182,6 +189,8 @@ class Slam {
   LocalizerConfig localizer_config_;
   std::optional<Localizer> localizer_;  ///< while the map is not added to
   bool is_mapping_wanted_ = true;
+  bool is_place_known_ = false;  ///< that of the newest finished submap
+  bool is_following_ = false;
   std::optional<Frame> latest_frame_;
 };
 
