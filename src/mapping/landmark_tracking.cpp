@@ -10,9 +10,9 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLowDetectionProb = 0.01;    // below this nothing is expected
-constexpr double kMinRange_m = 0.5;           // nearer detections have no direction
-constexpr double kMaxLogExistenceOdds = 8.0;  // evidence beyond this would take too many misses to undo
+constexpr double kLowDetectionProb = 0.01;     // below this nothing is expected
+constexpr double kMinRange_m = 0.5;            // nearer detections have no direction
+constexpr double kMaxLogExistenceOdds = 20.0;  // what hundreds of frames behind a house cannot take away
 
 }  // namespace
 

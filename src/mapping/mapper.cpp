@@ -25,6 +25,15 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
   return {std::sqrt(along.dot(cov_m2 * along)), std::sqrt(across.dot(cov_m2 * across)), std::sqrt(up.dot(cov_m2 * up))};
 }
 
+/// What a hypothesis believes of a landmark's visibility; that it is seen, if the hypothesis does not have it.
+double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
+  const auto& landmarks = hypothesis.landmarks;
+  const auto found =
+      std::lower_bound(landmarks.begin(), landmarks.end(), id,
+                       [](const TrackedLandmarkPtr& known, LandmarkId wanted) { return known->id < wanted; });
+  return found != landmarks.end() && (*found)->id == id ? (*found)->visible_prob : 1.0;
+}
+
 }  // namespace
 
 Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
@@ -175,19 +184,24 @@ void Mapper::joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& sub
   const std::optional<MapConclusion> conclusion = tree_.mapBranching().conclude(tree_.leaves());
   if (!conclusion) return;
   submap.alignment = conclusion->alignment;
-  for (const MergedLandmark& merged : conclusion->merged) {
-    const auto found = std::find_if(landmarks.begin(), landmarks.end(),
-                                    [&](const MixtureLandmark& landmark) { return landmark.id == merged.merged; });
-    if (found == landmarks.end()) continue;  // was merged into another landmark of the submap
-    const MixtureLandmark& earlier = tree_.mapBranching().landmark(merged.survivor);
-    found->id = earlier.id;
-    found->observations += earlier.observations;
-    found->first_submap = std::min(found->first_submap, earlier.first_submap);
-    found->existence_prob = std::max(found->existence_prob, earlier.existence_prob);
-    submap.merged.push_back(merged);
+  for (const auto& [id, survivor] : conclusion->merged) {
+    joinEarlierLandmark(tree_.mapBranching().landmark(survivor), id, landmarks, submap.merged);
   }
   std::sort(landmarks.begin(), landmarks.end(),
             [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
+}
+
+void Mapper::carry(const MixtureLandmark& landmark) {
+  auto carried = std::make_shared<TrackedLandmark>();
+  carried->id = landmark.id;
+  carried->position = landmark.position;
+  carried->class_probs = landmark.class_probs;
+  carried->log_existence_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
+  carried->visible_prob = visibilityOf(landmark.id, tree_.leaves().front());
+  carried->observations = landmark.observations;
+  carried->first_submap = landmark.first_submap;
+  carried->last_submap = landmark.last_submap;
+  carried_.push_back(std::move(carried));
 }
 
 std::optional<Submap> Mapper::finish() {
@@ -224,15 +238,7 @@ std::optional<Submap> Mapper::finish() {
   for (const MixtureLandmark& landmark : landmarks) {
     if (landmark.last_submap == index_) submap.landmarks.push_back(landmark);
     if (landmark.last_submap < oldest) continue;
-    auto carried = std::make_shared<TrackedLandmark>();
-    carried->id = landmark.id;
-    carried->position = landmark.position;
-    carried->class_probs = landmark.class_probs;
-    carried->log_existence_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
-    carried->observations = landmark.observations;
-    carried->first_submap = landmark.first_submap;
-    carried->last_submap = landmark.last_submap;
-    carried_.push_back(std::move(carried));
+    carry(landmark);
   }
   return submap;
 }

@@ -71,6 +71,7 @@ class Mapper {
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
   void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
   void joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const;
+  void carry(const MixtureLandmark& landmark);
   void learnDetectionRate(const std::vector<FusedAssociations>& associations,
                           const std::vector<MixtureLandmark>& landmarks);
   BiasStretch biasStretch(const std::vector<FusedAssociations>& associations) const;
