@@ -107,22 +107,22 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
   return true;
 }
 
-void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& measurement,
-                                         double driven_m, std::vector<Candidate>& candidates) const {
+void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
+                                         std::vector<Candidate>& candidates) const {
   candidates.clear();
   const double max_gate_m = config_.association.max_gate_m;
   for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
     const TrackedLandmark& landmark = *hypothesis.landmarks[j];
-    const Eigen::Vector3d d = measurement.position_m - landmark.position.mean_m;
+    const Eigen::Vector3d d = detected.position_m - landmark.position.mean_m;
     if (std::abs(d.x()) > max_gate_m || std::abs(d.y()) > max_gate_m) continue;
-    const double log_class = logClassLikelihood(measurement.class_index, landmark.class_probs);
+    const double log_class = logClassLikelihood(detected.class_index, landmark.class_probs);
     if (!std::isfinite(log_class)) continue;
+    const ClassIndex object_class = landmark.mostLikelyClass();
+    const Measurement measurement = ofObject(detected, object_class);
     Eigen::Matrix3d cov = landmark.position.cov_m2 + measurement.cov_m2;
     cov.diagonal().head<2>().array() += measurement.wander_variance_per_m * (driven_m - landmark.updated_at_m);
     if (landmark.is_from_earlier_submap) {
-      Eigen::Index most_likely = 0;
-      landmark.class_probs.maxCoeff(&most_likely);
-      cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(most_likely)];
+      cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(object_class)];
     }
     Candidate candidate;
     double log_density = 0.0;
@@ -200,9 +200,7 @@ void AssociationModel::addDistanceCosts(const MapHypothesis& hypothesis, const s
     for (int j = 0; j < problem.landmarks; ++j) {
       const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(j)];
       const double distance_m = (measurement.position_m - landmark.position.mean_m).norm();
-      Eigen::Index most_likely = 0;
-      landmark.class_probs.maxCoeff(&most_likely);
-      const bool same_class = !config_.semantics || most_likely == measurement.class_index;
+      const bool same_class = !config_.semantics || landmark.mostLikelyClass() == measurement.class_index;
       if (distance_m > gate_m || !same_class) continue;
       gated.push_back({j, 0.0, 0.0});
       problem.costs.add(j, distance_m);

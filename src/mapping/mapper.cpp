@@ -68,7 +68,21 @@ Measurement Mapper::makeMeasurement(const Detection& detection) const {
   measurement.wander_variance_per_m = calibration_.wanderVariancePerMetre(detection.class_index);
   measurement.class_index = detection.class_index;
   measurement.row = detection.row;
+  if (!detection.cov_m2 && config_.semantics) measurement.noise_of_class = noiseOfClasses(detection);
   return measurement;
+}
+
+std::shared_ptr<const std::vector<ClassNoise>> Mapper::noiseOfClasses(const Detection& detection) const {
+  const AssociationConfig& association = config_.association;
+  const double range_m = detection.position_m.head<2>().norm();
+  auto noise = std::make_shared<std::vector<ClassNoise>>();
+  for (ClassIndex i = 0; i < classes_.size(); ++i) {
+    const Eigen::Vector3d stddev_m = calibration_.noiseStddev(i, range_m);
+    const double outlier_m =
+        std::max(association.outlier_min_stddev_m, association.outlier_factor * stddev_m.maxCoeff());
+    noise->push_back({stddev_m, outlier_m * outlier_m, calibration_.wanderVariancePerMetre(i)});
+  }
+  return noise;
 }
 
 std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_odom_base, const Detections& detections,

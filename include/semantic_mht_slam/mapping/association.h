@@ -63,7 +63,7 @@ class AssociationModel {
   double gateMahalanobisSq() const { return gate_mahalanobis_sq_; }
 
  private:
-  void collectCandidates(const MapHypothesis& hypothesis, const Measurement& measurement, double driven_m,
+  void collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
                          std::vector<Candidate>& candidates) const;
   bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2, const Eigen::Vector3d& d,
                        Candidate& candidate, double& log_density) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -68,6 +69,7 @@ class Mapper {
 
   void begin(Stamp stamp, const Pose& T_odom_base);
   Measurement makeMeasurement(const Detection& detection) const;
+  std::shared_ptr<const std::vector<ClassNoise>> noiseOfClasses(const Detection& detection) const;
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
   void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
   void joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const;
