@@ -22,6 +22,10 @@ double chiSquare3Quantile(double prob) {
   return 0.5 * (low + high);
 }
 
+double wrongClassProb(const AssociationConfig& config) {
+  return config.class_model == ClassModel::kDelta ? 0.0 : config.confusion_prob;
+}
+
 double logPoisson(int count, double mean) {
   return -mean + count * std::log(mean) - logFactorial(count);
 }
@@ -38,14 +42,10 @@ const Candidate* AssociationProblem::candidate(int measurement, int landmark) co
 AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable& classes)
     : config_(config),
       class_count_(classes.size()),
+      confusion_(classes.size(), wrongClassProb(config.association), config.association.confusion_samples),
       log_map_volume_(std::log(config.association.map_volume_m3)),
       gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
   if (class_count_ > kMaxClasses) throw std::invalid_argument("more classes than a landmark can hold");
-  const bool is_delta = config_.association.class_model == ClassModel::kDelta;
-  const double wrong = is_delta || class_count_ == 1 ? 0.0 : config_.association.confusion_prob;
-  class_likelihood_ =
-      Eigen::ArrayXXd::Constant(class_count_, class_count_, class_count_ > 1 ? wrong / (class_count_ - 1) : 0.0);
-  class_likelihood_.matrix().diagonal().setConstant(1.0 - wrong);
   for (const ClassInfo& info : classes.all()) {
     log_class_prior_.push_back(config_.semantics ? std::log(info.prior_prob) : 0.0);
     const double stddev = info.transition == Transition::kGaussian ? info.transition_stddev_m : 0.0;
@@ -55,11 +55,11 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
 
 double AssociationModel::logClassLikelihood(ClassIndex detected, const ClassProbs& probs) const {
   if (!config_.semantics) return -std::log(static_cast<double>(class_count_));
-  return std::log((class_likelihood_.row(detected).transpose() * probs).sum());
+  return std::log((confusion_.likelihoods(detected) * probs).sum());
 }
 
 ClassProbs AssociationModel::updatedClassProbs(const ClassProbs& probs, ClassIndex detected) const {
-  ClassProbs updated = probs * class_likelihood_.row(detected).transpose();
+  ClassProbs updated = probs * confusion_.likelihoods(detected);
   const double sum = updated.sum();
   return sum > 0.0 ? ClassProbs(updated / sum) : probs;
 }
