@@ -29,7 +29,7 @@ struct AssociationConfig {
   double max_gate_m = 6.0;
   CountPrior count_prior = CountPrior::kLinear;
   int count_prior_cap = 20;
-  double concentration = 200.0;
+  double concentration = 100.0;
   double false_positive_rate = 0.001;
   double map_volume_m3 = 30000.0;
   ClassModel class_model = ClassModel::kConfusion;
