@@ -22,6 +22,10 @@ double chiSquare3Quantile(double prob) {
   return 0.5 * (low + high);
 }
 
+double wrongClassProb(const AssociationConfig& config) {
+  return config.class_model == ClassModel::kDelta ? 0.0 : config.confusion_prob;
+}
+
 double logPoisson(int count, double mean) {
   return -mean + count * std::log(mean) - logFactorial(count);
 }
@@ -38,14 +42,10 @@ const Candidate* AssociationProblem::candidate(int measurement, int landmark) co
 AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable& classes)
     : config_(config),
       class_count_(classes.size()),
+      confusion_(classes.size(), wrongClassProb(config.association), config.association.confusion_samples),
       log_map_volume_(std::log(config.association.map_volume_m3)),
       gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
   if (class_count_ > kMaxClasses) throw std::invalid_argument("more classes than a landmark can hold");
-  const bool is_delta = config_.association.class_model == ClassModel::kDelta;
-  const double wrong = is_delta || class_count_ == 1 ? 0.0 : config_.association.confusion_prob;
-  class_likelihood_ =
-      Eigen::ArrayXXd::Constant(class_count_, class_count_, class_count_ > 1 ? wrong / (class_count_ - 1) : 0.0);
-  class_likelihood_.matrix().diagonal().setConstant(1.0 - wrong);
   for (const ClassInfo& info : classes.all()) {
     log_class_prior_.push_back(config_.semantics ? std::log(info.prior_prob) : 0.0);
     const double stddev = info.transition == Transition::kGaussian ? info.transition_stddev_m : 0.0;
@@ -55,11 +55,11 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
 
 double AssociationModel::logClassLikelihood(ClassIndex detected, const ClassProbs& probs) const {
   if (!config_.semantics) return -std::log(static_cast<double>(class_count_));
-  return std::log((class_likelihood_.row(detected).transpose() * probs).sum());
+  return std::log((confusion_.likelihoods(detected) * probs).sum());
 }
 
 ClassProbs AssociationModel::updatedClassProbs(const ClassProbs& probs, ClassIndex detected) const {
-  ClassProbs updated = probs * class_likelihood_.row(detected).transpose();
+  ClassProbs updated = probs * confusion_.likelihoods(detected);
   const double sum = updated.sum();
   return sum > 0.0 ? ClassProbs(updated / sum) : probs;
 }
@@ -107,22 +107,22 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
   return true;
 }
 
-void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& measurement,
-                                         double driven_m, std::vector<Candidate>& candidates) const {
+void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
+                                         std::vector<Candidate>& candidates) const {
   candidates.clear();
   const double max_gate_m = config_.association.max_gate_m;
   for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
     const TrackedLandmark& landmark = *hypothesis.landmarks[j];
-    const Eigen::Vector3d d = measurement.position_m - landmark.position.mean_m;
+    const Eigen::Vector3d d = detected.position_m - landmark.position.mean_m;
     if (std::abs(d.x()) > max_gate_m || std::abs(d.y()) > max_gate_m) continue;
-    const double log_class = logClassLikelihood(measurement.class_index, landmark.class_probs);
+    const double log_class = logClassLikelihood(detected.class_index, landmark.class_probs);
     if (!std::isfinite(log_class)) continue;
+    const ClassIndex object_class = landmark.mostLikelyClass();
+    const Measurement measurement = ofObject(detected, object_class);
     Eigen::Matrix3d cov = landmark.position.cov_m2 + measurement.cov_m2;
     cov.diagonal().head<2>().array() += measurement.wander_variance_per_m * (driven_m - landmark.updated_at_m);
     if (landmark.is_from_earlier_submap) {
-      Eigen::Index most_likely = 0;
-      landmark.class_probs.maxCoeff(&most_likely);
-      cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(most_likely)];
+      cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(object_class)];
     }
     Candidate candidate;
     double log_density = 0.0;
@@ -200,9 +200,7 @@ void AssociationModel::addDistanceCosts(const MapHypothesis& hypothesis, const s
     for (int j = 0; j < problem.landmarks; ++j) {
       const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(j)];
       const double distance_m = (measurement.position_m - landmark.position.mean_m).norm();
-      Eigen::Index most_likely = 0;
-      landmark.class_probs.maxCoeff(&most_likely);
-      const bool same_class = !config_.semantics || most_likely == measurement.class_index;
+      const bool same_class = !config_.semantics || landmark.mostLikelyClass() == measurement.class_index;
       if (distance_m > gate_m || !same_class) continue;
       gated.push_back({j, 0.0, 0.0});
       problem.costs.add(j, distance_m);

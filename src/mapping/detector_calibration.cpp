@@ -11,6 +11,9 @@ constexpr double kBinRatio = 1.05;
 constexpr double kMedianToStddev = 1.4826;  // of |x|, x normal
 // |difference of two frames' horizontal residual|, Rayleigh distributed: median = stddev sqrt(2 log 2)
 constexpr double kRayleighMedian = 1.17741;
+constexpr double kMiddleRange_m = 20.0;
+constexpr double kReachSigmas = 3.0;   // of the difference of two detections
+constexpr double kLargestReach = 2.0;  // times the configured one
 
 int binOf(double value) {
   return static_cast<int>(std::floor(std::log(value / kSmallest) / std::log(kBinRatio)));
@@ -38,7 +41,8 @@ void describe(CalibrationConfig& config, Fields& fields) {
   fields.add("prior_samples", config.prior_samples, "", {1, 100000},
              "How many measurements the class table counts for.");
   fields.add("lag_frames", config.lag_frames, "frames", {2, 100}, "Distance of the frames that show the wander.");
-  fields.add("max_distance", config.max_distance_m, "m", {0.1, 100.0}, "Neighbours further apart are not compared.");
+  fields.add("max_distance", config.max_distance_m, "m", {0.1, 100.0},
+             "Neighbours further apart are not compared, unless the class is so noisy that many would be missed.");
   fields.add("min_stddev", config.min_stddev_m, "m", {1e-3, 10.0}, "Noise is never taken to be below this.");
 }
 
@@ -93,18 +97,32 @@ void DetectorCalibration::add(const Pose& T_odom_base, const Detections& detecti
   past_.push_back(std::move(now));
 }
 
+/// How far apart neighbours are compared, by class: of those of a noisy class a fixed distance would let only the near
+/// ones through, and the noise would seem to be less.
+std::vector<double> DetectorCalibration::reaches() const {
+  std::vector<double> reaches_m;
+  for (std::size_t c = 0; c < statistics_.size(); ++c) {
+    const double stddev_m = noiseStddev(static_cast<ClassIndex>(c), kMiddleRange_m).head<2>().maxCoeff();
+    reaches_m.push_back(std::clamp(kReachSigmas * std::sqrt(2.0) * stddev_m, config_.max_distance_m,
+                                   kLargestReach * config_.max_distance_m));
+  }
+  return reaches_m;
+}
+
 void DetectorCalibration::compare(const PastFrame& past, const PastFrame& now, bool is_lagged) {
   const Pose T_now_past = now.T_odom_base.inverse() * past.T_odom_base;
   const double driven_m = T_now_past.translation_m.norm();
   if (is_lagged && driven_m < 1.0) return;  // at a stop nothing wanders
   std::vector<Eigen::Vector3d> expected_m;
   for (const Eigen::Vector3d& position_m : past.positions_m) expected_m.push_back(T_now_past * position_m);
+  const std::vector<double> reaches_m = reaches();
   for (std::size_t i = 0; i < now.positions_m.size(); ++i) {
     const Eigen::Vector3d& position_m = now.positions_m[i];
-    const int j = nearest(position_m, now.classes[i], expected_m, past.classes, config_.max_distance_m);
+    const double reach_m = reaches_m[static_cast<std::size_t>(now.classes[i])];
+    const int j = nearest(position_m, now.classes[i], expected_m, past.classes, reach_m);
     if (j < 0) continue;
     const auto k = static_cast<std::size_t>(j);
-    const int back = nearest(expected_m[k], now.classes[i], now.positions_m, now.classes, config_.max_distance_m);
+    const int back = nearest(expected_m[k], now.classes[i], now.positions_m, now.classes, reach_m);
     if (back != static_cast<int>(i)) continue;
     const Eigen::Vector3d residual_m = position_m - expected_m[k];
     ClassStatistics& statistics = statistics_[static_cast<std::size_t>(now.classes[i])];
@@ -137,7 +155,7 @@ double DetectorCalibration::wanderVariancePerMetre(ClassIndex class_index) const
   if (!config_.enabled) return 0.0;
   const ClassStatistics& statistics = statistics_[static_cast<std::size_t>(class_index)];
   const double lagged_stddev_m = statistics.wander.median() / kRayleighMedian;
-  const Eigen::Vector3d white_m = noiseStddev(class_index, 20.0);
+  const Eigen::Vector3d white_m = noiseStddev(class_index, kMiddleRange_m);
   const double white_variance_m2 = white_m[0] * white_m[0] + white_m[1] * white_m[1];  // two frames, mean direction
   const double added_m2 = lagged_stddev_m * lagged_stddev_m - white_variance_m2;
   return std::max(0.0, added_m2) / statistics.wander_distance_m.median();

@@ -7,6 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/map/merged_ids.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -64,6 +66,12 @@ void absorb(MixtureLandmark& survivor, const MixtureLandmark& merged) {
   survivor.last_submap = std::max(survivor.last_submap, merged.last_submap);
 }
 
+LandmarkId survivorOf(const std::vector<MergedLandmark>& merged, LandmarkId id) {
+  MergedIds ids;
+  for (const MergedLandmark& step : merged) ids.merge(step.merged, step.survivor);
+  return ids.resolve(id);
+}
+
 }  // namespace
 
 void describe(DuplicateConfig& config, Fields& fields) {
@@ -117,6 +125,30 @@ std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
   }
   landmarks.resize(kept);
   return merged;
+}
+
+void joinEarlierLandmark(const MixtureLandmark& earlier, LandmarkId id, std::vector<MixtureLandmark>& landmarks,
+                         std::vector<MergedLandmark>& merged) {
+  const auto find = [&](LandmarkId name) {
+    return std::find_if(landmarks.begin(), landmarks.end(), [&](const auto& landmark) { return landmark.id == name; });
+  };
+  const auto landmark = find(id);
+  if (landmark == landmarks.end()) return;
+  const LandmarkId survivor = survivorOf(merged, earlier.id);
+  const auto named = find(survivor);
+  if (survivor != id && named != landmarks.end()) {
+    absorb(*named, *landmark);
+    landmarks.erase(landmark);
+    merged.push_back({id, survivor});
+    return;
+  }
+  const auto is_of_earlier = [&](const MergedLandmark& step) { return step.merged == earlier.id; };
+  merged.erase(std::remove_if(merged.begin(), merged.end(), is_of_earlier), merged.end());
+  landmark->id = earlier.id;
+  landmark->observations += earlier.observations;
+  landmark->first_submap = std::min(landmark->first_submap, earlier.first_submap);
+  landmark->existence_prob = std::max(landmark->existence_prob, earlier.existence_prob);
+  merged.push_back({id, earlier.id});
 }
 
 }  // namespace semantic_mht_slam

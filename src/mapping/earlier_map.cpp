@@ -1,7 +1,5 @@
 #include "semantic_mht_slam/mapping/earlier_map.h"
 
-#include <algorithm>
-
 namespace semantic_mht_slam {
 
 void describe(MapAlignmentConfig& config, Fields& fields) {
@@ -21,29 +19,6 @@ void describe(MapAlignmentConfig& config, Fields& fields) {
              "Summed weight of the hypotheses that agree from which on an alignment is believed.");
   fields.add("min_matches", config.min_matches, "", {3, 1000}, "An alignment with fewer landmarks is not believed.");
   fields.group("joint", config.joint);
-}
-
-void joinEarlierLandmarks(const std::vector<MergedLandmark>& found,
-                          const std::function<const MixtureLandmark&(LandmarkId)>& earlier,
-                          std::vector<MixtureLandmark>& landmarks, std::vector<MergedLandmark>& merged) {
-  const auto withId = [&](LandmarkId id) {
-    return std::find_if(landmarks.begin(), landmarks.end(), [&](const MixtureLandmark& l) { return l.id == id; });
-  };
-  for (const MergedLandmark& name : found) {
-    const auto landmark = withId(name.merged);
-    if (landmark == landmarks.end()) continue;               // was merged into another landmark of the submap
-    if (withId(name.survivor) != landmarks.end()) continue;  // the submap has it beside this one
-    const MixtureLandmark& known = earlier(name.survivor);
-    landmark->id = name.survivor;
-    landmark->observations += known.observations;
-    landmark->first_submap = std::min(landmark->first_submap, known.first_submap);
-    landmark->existence_prob = std::max(landmark->existence_prob, known.existence_prob);
-    const auto leadsBack = [&](const MergedLandmark& pair) { return pair.merged == name.survivor; };
-    merged.erase(std::remove_if(merged.begin(), merged.end(), leadsBack), merged.end());
-    merged.push_back(name);
-  }
-  std::sort(landmarks.begin(), landmarks.end(),
-            [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
 }
 
 }  // namespace semantic_mht_slam

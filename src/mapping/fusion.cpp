@@ -9,12 +9,41 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kSamePlaceSigmas = 0.5;
+
 struct Contribution {
   double weight;
   const TrackedLandmark* landmark;
 };
 
-/// Components of equal position are one.
+/// Whether two components say the same of where a landmark is: hypotheses that differ elsewhere correct the pose a
+/// little differently.
+bool coincide(const MixtureComponent& a, const MixtureComponent& b) {
+  const Eigen::Vector3d d = a.position.mean_m - b.position.mean_m;
+  const Eigen::Vector3d variance_m2 = a.position.cov_m2.diagonal().cwiseMin(b.position.cov_m2.diagonal());
+  return (d.array().square() <= kSamePlaceSigmas * kSamePlaceSigmas * variance_m2.array()).all();
+}
+
+/// Makes one component of each and the heavier one that it coincides with. The moments of the mixture stay.
+std::vector<MixtureComponent> withoutCoinciding(const std::vector<MixtureComponent>& components) {
+  std::vector<MixtureComponent> kept;
+  for (const MixtureComponent& component : components) {
+    const auto same =
+        std::find_if(kept.begin(), kept.end(), [&](const auto& other) { return coincide(other, component); });
+    if (same == kept.end()) {
+      kept.push_back(component);
+    } else {
+      *same = {same->weight + component.weight, moments({*same, component})};
+    }
+  }
+  return kept;
+}
+
+void sortByWeight(std::vector<MixtureComponent>& components) {
+  std::stable_sort(components.begin(), components.end(),
+                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
+}
+
 std::vector<MixtureComponent> makeComponents(const std::vector<Contribution>& contributions, double total) {
   std::vector<MixtureComponent> components;
   for (const auto& [weight, landmark] : contributions) {
@@ -29,8 +58,9 @@ std::vector<MixtureComponent> makeComponents(const std::vector<Contribution>& co
       same->weight += weight / total;
     }
   }
-  std::stable_sort(components.begin(), components.end(),
-                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  sortByWeight(components);
+  components = withoutCoinciding(components);
+  sortByWeight(components);
   return components;
 }
 

@@ -86,7 +86,7 @@ PoseOffset MultiHypothesisTree::offsetAfter(const MapHypothesis& parent, const T
     const int column = assignments.column(choice, i);
     if (!problem_.isLandmark(column)) continue;
     const TrackedLandmark& landmark = *parent.landmarks[static_cast<std::size_t>(column)];
-    const Measurement& measurement = measurements_[static_cast<std::size_t>(i)];
+    const Measurement measurement = ofObject(measurements_[static_cast<std::size_t>(i)], landmark.mostLikelyClass());
     if (landmark.is_expected || landmark.observations < kSettledObservations ||
         problem_.candidate(i, column)->is_outlier)
       continue;

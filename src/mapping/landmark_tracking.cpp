@@ -10,9 +10,9 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLowDetectionProb = 0.01;    // below this nothing is expected
-constexpr double kMinRange_m = 0.5;           // nearer detections have no direction
-constexpr double kMaxLogExistenceOdds = 8.0;  // evidence beyond this would take too many misses to undo
+constexpr double kLowDetectionProb = 0.01;     // below this nothing is expected
+constexpr double kMinRange_m = 0.5;            // nearer detections have no direction
+constexpr double kMaxLogExistenceOdds = 20.0;  // what hundreds of frames behind a house cannot take away
 
 }  // namespace
 
@@ -43,8 +43,9 @@ std::optional<FilterUpdate> LandmarkTracking::filtered(const Gaussian3& predicte
 }
 
 TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, const TrackedLandmark& landmark,
-                                             const Measurement& measurement, const TreeInput& input,
+                                             const Measurement& detected, const TreeInput& input,
                                              const Candidate& candidate) const {
+  const Measurement measurement = ofObject(detected, landmark.mostLikelyClass());
   auto result = std::make_shared<TrackedLandmark>(landmark);
   Gaussian3 predicted = landmark.position;
   predicted.cov_m2.diagonal().head<2>().array() +=
@@ -87,9 +88,7 @@ TrackedLandmarkPtr LandmarkTracking::begun(const AssociationModel& model, const 
 double LandmarkTracking::detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const {
   const Eigen::Vector3d position_m =
       input.T_submap_base.rotation.conjugate() * (landmark.position.mean_m - input.T_submap_base.translation_m);
-  Eigen::Index most_likely = 0;
-  landmark.class_probs.maxCoeff(&most_likely);
-  return std::max(kLowDetectionProb, rate_.prob(static_cast<ClassIndex>(most_likely), position_m));
+  return std::max(kLowDetectionProb, rate_.prob(landmark.mostLikelyClass(), position_m));
 }
 
 double LandmarkTracking::applyMissedDetections(MapHypothesis& hypothesis, const TreeInput& input,

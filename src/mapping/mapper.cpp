@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -13,6 +14,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kCertainExistence = 0.95;  // of landmarks that tell how often what exists is detected
+constexpr double kCertainClass = 0.99;      // of landmarks that tell what a class is taken for
 constexpr double kKeyframeSpacing_m = 2.0;  // nearer ones see the same error of a centroid
 
 /// Deviations along a ray, across it in the plane and vertically.
@@ -23,6 +25,15 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
       planar_m > 0.0 ? Eigen::Vector3d(-ray_m.y() / planar_m, ray_m.x() / planar_m, 0.0) : Eigen::Vector3d::UnitY();
   const Eigen::Vector3d up = along.cross(across);
   return {std::sqrt(along.dot(cov_m2 * along)), std::sqrt(across.dot(cov_m2 * across)), std::sqrt(up.dot(cov_m2 * up))};
+}
+
+/// What a hypothesis believes of a landmark's visibility; that it is seen, if the hypothesis does not have it.
+double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
+  const auto& landmarks = hypothesis.landmarks;
+  const auto found =
+      std::lower_bound(landmarks.begin(), landmarks.end(), id,
+                       [](const TrackedLandmarkPtr& known, LandmarkId wanted) { return known->id < wanted; });
+  return found != landmarks.end() && (*found)->id == id ? (*found)->visible_prob : 1.0;
 }
 
 }  // namespace
@@ -46,7 +57,7 @@ Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
   return cov;
 }
 
-Measurement Mapper::makeMeasurement(const Detection& detection) const {
+Measurement Mapper::makeMeasurement(const Detection& detection) {
   Measurement measurement;
   measurement.position_m = bias_.corrected(detection).position_m;
   measurement.cov_m2 = detectorCov(detection) + bias_.uncertainty(detection.class_index, detection.position_m);
@@ -59,7 +70,47 @@ Measurement Mapper::makeMeasurement(const Detection& detection) const {
   measurement.wander_variance_per_m = calibration_.wanderVariancePerMetre(detection.class_index);
   measurement.class_index = detection.class_index;
   measurement.row = detection.row;
+  if (!detection.cov_m2 && config_.semantics) {
+    measurement.noise_of_class = noiseOfClasses(detection.position_m.head<2>().norm());
+  }
   return measurement;
+}
+
+std::shared_ptr<const std::vector<ClassNoise>> Mapper::noiseOfClasses(double range_m) {
+  auto& known = noise_of_class_[static_cast<std::size_t>(DetectorCalibration::rangeBin(range_m))];
+  if (known) return known;
+  const AssociationConfig& association = config_.association;
+  auto noise = std::make_shared<std::vector<ClassNoise>>();
+  for (ClassIndex i = 0; i < classes_.size(); ++i) {
+    const Eigen::Vector3d stddev_m = calibration_.noiseStddev(i, range_m);
+    const double outlier_m =
+        std::max(association.outlier_min_stddev_m, association.outlier_factor * stddev_m.maxCoeff());
+    noise->push_back({stddev_m, outlier_m * outlier_m, calibration_.wanderVariancePerMetre(i)});
+  }
+  known = noise;
+  return known;
+}
+
+bool Mapper::learnsConfusion() const {
+  return config_.semantics && config_.association.learn_confusion &&
+         config_.association.class_model == ClassModel::kConfusion;
+}
+
+void Mapper::learnConfusion(const std::vector<FusedAssociations>& associations,
+                            const std::vector<MixtureLandmark>& landmarks) {
+  std::map<LandmarkId, ClassIndex> certain;
+  for (const MixtureLandmark& landmark : landmarks) {
+    const bool is_certain = landmark.existence_prob >= kCertainExistence &&
+                            landmark.class_probs.maxCoeff() >= kCertainClass && landmark.last_submap == index_;
+    if (is_certain) certain[landmark.id] = landmark.mostLikelyClass();
+  }
+  for (const Keyframe& keyframe : keyframes_) {
+    const std::vector<LandmarkId>& ids = associations.at(keyframe.place).landmark_of_measurement;
+    for (std::size_t i = 0; i < keyframe.detections.size(); ++i) {
+      const auto found = certain.find(ids[i]);
+      if (found != certain.end()) tree_.confusion().add(found->second, keyframe.detections[i].class_index);
+    }
+  }
 }
 
 std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_odom_base, const Detections& detections,
@@ -81,6 +132,7 @@ std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_
   input.step_m = step_m;
   input.T_submap_base = T_odom_submap_.inverse() * T_odom_base;
   calibration_.add(T_odom_base, detections);
+  noise_of_class_ = {};
   T_submap_base_.push_back(input.T_submap_base);
   rows_.emplace_back();
   for (const Detection& detection : detections) {
@@ -129,7 +181,7 @@ std::vector<TrackedLandmarkPtr> Mapper::propagated(const Pose& T_new_old) const 
 }
 
 void Mapper::keepKeyframe(const Pose& T_submap_base, const Detections& detections) {
-  if (!config_.bias.enabled) return;
+  if (!config_.bias.enabled && !learnsConfusion()) return;
   const bool is_far =
       keyframes_.empty() ||
       (T_submap_base.translation_m - keyframes_.back().T_submap_base.translation_m).norm() >= kKeyframeSpacing_m;
@@ -175,8 +227,24 @@ void Mapper::joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& sub
   const std::optional<MapConclusion> conclusion = tree_.mapBranching().conclude(tree_.leaves());
   if (!conclusion) return;
   submap.alignment = conclusion->alignment;
-  const auto earlier = [this](LandmarkId id) -> const MixtureLandmark& { return tree_.mapBranching().landmark(id); };
-  joinEarlierLandmarks(conclusion->merged, earlier, landmarks, submap.merged);
+  for (const auto& [id, survivor] : conclusion->merged) {
+    joinEarlierLandmark(tree_.mapBranching().landmark(survivor), id, landmarks, submap.merged);
+  }
+  std::sort(landmarks.begin(), landmarks.end(),
+            [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
+}
+
+void Mapper::carry(const MixtureLandmark& landmark) {
+  auto carried = std::make_shared<TrackedLandmark>();
+  carried->id = landmark.id;
+  carried->position = landmark.position;
+  carried->class_probs = landmark.class_probs;
+  carried->log_existence_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
+  carried->visible_prob = visibilityOf(landmark.id, tree_.leaves().front());
+  carried->observations = landmark.observations;
+  carried->first_submap = landmark.first_submap;
+  carried->last_submap = landmark.last_submap;
+  carried_.push_back(std::move(carried));
 }
 
 std::optional<Submap> Mapper::finish() {
@@ -208,20 +276,13 @@ std::optional<Submap> Mapper::finish() {
     return Eigen::Vector3d(horizontal_m, horizontal_m, stddev_m[2]).cwiseAbs2().asDiagonal();
   };
   learnDetectionRate(fused_associations, landmarks);
+  if (learnsConfusion()) learnConfusion(fused_associations, landmarks);
   submap.merged = mergeDuplicates(config_.duplicates, fused_associations, detector_cov, landmarks);
   joinEarlierMap(landmarks, submap);
   for (const MixtureLandmark& landmark : landmarks) {
     if (landmark.last_submap == index_) submap.landmarks.push_back(landmark);
     if (landmark.last_submap < oldest) continue;
-    auto carried = std::make_shared<TrackedLandmark>();
-    carried->id = landmark.id;
-    carried->position = landmark.position;
-    carried->class_probs = landmark.class_probs;
-    carried->log_existence_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
-    carried->observations = landmark.observations;
-    carried->first_submap = landmark.first_submap;
-    carried->last_submap = landmark.last_submap;
-    carried_.push_back(std::move(carried));
+    carry(landmark);
   }
   return submap;
 }

@@ -20,7 +20,12 @@ void describe(AssociationConfig& config, Fields& fields) {
   fields.add<ClassModel>("class_model", config.class_model,
                          {{"delta", ClassModel::kDelta}, {"confusion", ClassModel::kConfusion}},
                          "Whether a detection's class is always right (the paper) or may be confused.");
-  fields.add("confusion_prob", config.confusion_prob, "", {0.0, 0.9}, "Probability that a detection's class is wrong.");
+  fields.add("confusion_prob", config.confusion_prob, "", {0.0, 0.9},
+             "Probability that a detection's class is wrong, before it is known.");
+  fields.add("confusion_samples", config.confusion_samples, "", {1.0, 1e12},
+             "Detections that this counts for in each class, against what is seen.");
+  fields.add("learn_confusion", config.learn_confusion,
+             "Whether it is found out while driving which classes the detector takes for which (the paper: false).");
   fields.add("new_density", config.new_density, "1/frame", {1e-6, 1e3},
              "lambda_n V: mean number of new landmarks in a frame.");
   fields.add("false_positive_density", config.false_positive_density, "1/frame", {1e-6, 1e3},
@@ -69,6 +74,7 @@ MapperConfig defaultsOf(Estimator estimator) {
   if (estimator == Estimator::kDpmhm) return config;
   config.association.count_prior = CountPrior::kNone;
   config.association.outlier_prob = 0.0;
+  config.association.learn_confusion = false;
   config.association.split_distance_factor = 0.0;
   config.submap.correct_pose = false;
   config.duplicates.merge = false;

@@ -54,6 +54,11 @@ void DetectionRate::transfer(StateArchive& archive) {
   transferFixed(archive, cells_);
 }
 
+void ClassConfusion::transfer(StateArchive& archive) {
+  transferFixed(archive, counts_);
+  for (ClassIndex object = 0; object < class_count_; ++object) evaluate(object);
+}
+
 void MapBranching::transfer(StateArchive& archive) {
   auto& [landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = map_;
   archive(landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad);
@@ -62,7 +67,7 @@ void MapBranching::transfer(StateArchive& archive) {
 }
 
 void MultiHypothesisTree::transfer(StateArchive& archive) {
-  archive(tracking_.detectionRate(), branching_);
+  archive(tracking_.detectionRate(), model_.confusion(), branching_);
   transferLeaves(archive, leaves_);
   archive(next_hypothesis_id_);
 }

@@ -68,5 +68,48 @@ TEST(DuplicateMergingTest, NothingIsMergedWhenSwitchedOff) {
       mergeDuplicates(config, makeFrames([](std::size_t f) { return f % 5 == 0; }), detectorCov, landmarks).empty());
 }
 
+TEST(DuplicateMergingTest, ALandmarkTakesTheNameOfTheEarlierMap) {
+  std::vector<MixtureLandmark> landmarks = {makeLandmark(5, 0.0, 24), makeLandmark(6, 9.0, 3)};
+  std::vector<MergedLandmark> merged;
+  joinEarlierLandmark(makeLandmark(2, 100.0, 7), 5, landmarks, merged);
+  ASSERT_EQ(landmarks.size(), 2U);
+  EXPECT_EQ(landmarks[0].id, 2U);
+  EXPECT_EQ(landmarks[0].observations, 31);
+  EXPECT_EQ(landmarks[0].position.mean_m.x(), 0.0);
+  ASSERT_EQ(merged.size(), 1U);
+  EXPECT_EQ(merged[0].merged, 5U);
+  EXPECT_EQ(merged[0].survivor, 2U);
+}
+
+TEST(DuplicateMergingTest, NamesOfAnEarlierLandmarkThatWasMergedHereDoNotRunInACircle) {
+  std::vector<MixtureLandmark> landmarks = {makeLandmark(5, 0.0, 24)};
+  std::vector<MergedLandmark> merged = {{4, 2}, {2, 3}, {3, 5}};  // the earlier map's 2 is 5 by now
+  joinEarlierLandmark(makeLandmark(2, 100.0, 7), 5, landmarks, merged);
+  ASSERT_EQ(landmarks.size(), 1U);
+  EXPECT_EQ(landmarks[0].id, 2U);
+  for (const LandmarkId name : {2U, 3U, 4U, 5U}) {
+    LandmarkId id = name;
+    for (std::size_t step = 0; step <= merged.size(); ++step) {
+      for (const MergedLandmark& next : merged) {
+        if (next.merged != id) continue;
+        id = next.survivor;
+        break;
+      }
+    }
+    EXPECT_EQ(id, 2U) << "from " << name;
+  }
+}
+
+TEST(DuplicateMergingTest, ALandmarkThatHasTheEarlierNameAlreadyTakesTheOtherOneIn) {
+  std::vector<MixtureLandmark> landmarks = {makeLandmark(2, 0.0, 24), makeLandmark(5, 0.5, 6)};
+  std::vector<MergedLandmark> merged;
+  joinEarlierLandmark(makeLandmark(2, 100.0, 24), 5, landmarks, merged);
+  ASSERT_EQ(landmarks.size(), 1U);
+  EXPECT_EQ(landmarks[0].id, 2U);
+  EXPECT_EQ(landmarks[0].observations, 30);
+  ASSERT_EQ(merged.size(), 1U);
+  EXPECT_EQ(merged[0].survivor, 2U);
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

@@ -39,6 +39,28 @@ TEST(FusionTest, MixtureKeepsMeanAndCovarianceOfTheHypotheses) {
   EXPECT_NEAR(fused[0].position.cov_m2(1, 1), 0.16, 1e-12);
 }
 
+TEST(FusionTest, ComponentsThatNearlyCoincideAreOneAndTheMomentsStay) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Rng rng(seed);
+    std::vector<MapHypothesis> leaves;
+    std::vector<MixtureComponent> components;
+    for (int i = 0; i < 6; ++i) {  // two places, 2 m apart, with small differences
+      const double weight = (i + 1) / 21.0;
+      const Eigen::Vector3d mean(i % 2 == 0 ? 0.0 : 2.0, rng.normal(0.0, 0.01), rng.normal(0.0, 0.01));
+      const double variance = rng.uniform(0.03, 0.05);
+      leaves.push_back(makeLeaf(weight, {makeLandmark(3, mean, variance, 2.0)}));
+      components.push_back({weight, {mean, variance * Eigen::Matrix3d::Identity()}});
+    }
+    const auto fused = fuseHypotheses(leaves);
+    ASSERT_EQ(fused.size(), 1U);
+    ASSERT_EQ(fused[0].components.size(), 2U);
+    EXPECT_NEAR(fused[0].components[0].weight, 12.0 / 21.0, 1e-12);
+    EXPECT_NEAR(fused[0].components[1].weight, 9.0 / 21.0, 1e-12);
+    EXPECT_TRUE(fused[0].position.mean_m.isApprox(moments(components).mean_m, 1e-12));
+    EXPECT_TRUE(fused[0].position.cov_m2.isApprox(moments(components).cov_m2, 1e-12));
+  }
+}
+
 TEST(FusionTest, HypothesesThatAgreeAreOneComponent) {
   const TrackedLandmarkPtr shared = makeLandmark(3, {1.0, 2.0, 3.0}, 0.1, 0.0);
   const auto fused = fuseHypotheses({makeLeaf(0.6, {shared}), makeLeaf(0.4, {shared})});

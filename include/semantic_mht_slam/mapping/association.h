@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/common/assignment.h"
+#include "semantic_mht_slam/mapping/class_confusion.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 #include "semantic_mht_slam/models/class_table.h"
@@ -59,11 +60,14 @@ class AssociationModel {
   /// log p_s of a class (paper eq. 2).
   double logClassPrior(ClassIndex detected) const { return log_class_prior_[static_cast<std::size_t>(detected)]; }
 
+  /// How classes are confused, as it is known now.
+  ClassConfusion& confusion() { return confusion_; }
+
   double logMapVolume() const { return log_map_volume_; }
   double gateMahalanobisSq() const { return gate_mahalanobis_sq_; }
 
  private:
-  void collectCandidates(const MapHypothesis& hypothesis, const Measurement& measurement, double driven_m,
+  void collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
                          std::vector<Candidate>& candidates) const;
   bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2, const Eigen::Vector3d& d,
                        Candidate& candidate, double& log_density) const;
@@ -75,7 +79,7 @@ class AssociationModel {
 
   MapperConfig config_;
   int class_count_;
-  Eigen::ArrayXXd class_likelihood_;  ///< P(detected | true), a row a detected class
+  ClassConfusion confusion_;
   std::vector<double> log_class_prior_;
   std::vector<double> transition_variance_m2_;
   double log_map_volume_;

@@ -58,6 +58,11 @@ class DetectorCalibration {
   /// Standard deviations along the line of sight, across it and vertically, metres.
   Eigen::Vector3d noiseStddev(ClassIndex class_index, double range_m) const;
 
+  static constexpr int kRangeBins = 3;
+
+  /// The noise is the same at all ranges of a bin, 0 to kRangeBins - 1.
+  static int rangeBin(double range_m);
+
   /// Growth of a centroid's variance with the distance driven, m^2/m.
   double wanderVariancePerMetre(ClassIndex class_index) const;
 
@@ -65,8 +70,6 @@ class DetectorCalibration {
   void transfer(StateArchive& archive);
 
  private:
-  static constexpr int kRangeBins = 3;
-
   struct PastFrame {
     Pose T_odom_base;
     std::vector<Eigen::Vector3d> positions_m;
@@ -83,7 +86,7 @@ class DetectorCalibration {
   };
 
   void compare(const PastFrame& past, const PastFrame& now, bool is_lagged);
-  static int rangeBin(double range_m);
+  std::vector<double> reaches() const;
 
   CalibrationConfig config_;
   std::vector<ClassStatistics> statistics_;

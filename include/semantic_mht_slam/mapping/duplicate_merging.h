@@ -28,4 +28,11 @@ std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
                                             const std::function<Eigen::Matrix3d(ClassIndex)>& detectorCov,
                                             std::vector<MixtureLandmark>& landmarks);
 
+/// Gives the landmark `id` of a submap the name that the earlier map has for it. `merged` is what the submap has merged
+/// so far; afterwards no chain of names in it runs in a circle and no two landmarks have one id: a landmark that has
+/// the earlier name already takes the other one in, and an earlier name that was merged into `id` stays. Nothing
+/// happens if `id` is not among the landmarks.
+void joinEarlierLandmark(const MixtureLandmark& earlier, LandmarkId id, std::vector<MixtureLandmark>& landmarks,
+                         std::vector<MergedLandmark>& merged);
+
 }  // namespace semantic_mht_slam

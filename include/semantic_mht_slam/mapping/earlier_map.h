@@ -5,7 +5,6 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/map/landmark.h"
-#include "semantic_mht_slam/map/submap.h"
 #include "semantic_mht_slam/mapping/joint_alignment.h"
 
 namespace semantic_mht_slam {
@@ -39,13 +38,5 @@ struct MapAlignmentConfig {
 };
 
 void describe(MapAlignmentConfig& config, Fields& fields);
-
-/// Gives landmarks of a submap the ids of the earlier landmarks that they turned out to be (`found`: id of the submap,
-/// earlier id), with their history; `earlier` gives an earlier landmark by its id. `landmarks` stay sorted by id, each
-/// id there once. `merged` is what was merged in the submap before and grows by the new names, without circles: if the
-/// earlier landmark itself was a duplicate of the one that now takes its id, that merger is taken back.
-void joinEarlierLandmarks(const std::vector<MergedLandmark>& found,
-                          const std::function<const MixtureLandmark&(LandmarkId)>& earlier,
-                          std::vector<MixtureLandmark>& landmarks, std::vector<MergedLandmark>& merged);
 
 }  // namespace semantic_mht_slam

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/map/landmark.h"
+#include "semantic_mht_slam/mapping/class_noise.h"
 #include "semantic_mht_slam/mapping/pose_offset.h"
 
 namespace semantic_mht_slam {
@@ -24,6 +25,8 @@ struct Measurement {
   Eigen::Vector3d outlier_variance_m2 = Eigen::Vector3d::Zero();  ///< added if the centroid is far off, submap axes
   double wander_variance_per_m = 0.0;  ///< growth of a landmark's variance with the distance driven, by class
   LandmarkId id_if_new = kNoLandmark;  ///< the same in every hypothesis that makes a landmark of it
+  /// By class of the object that it may show; null: the detector has stated its noise.
+  std::shared_ptr<const std::vector<ClassNoise>> noise_of_class;
 };
 
 /// One time step for the tree.
@@ -51,6 +54,12 @@ struct TrackedLandmark {
   int earlier = -1;              ///< the landmark of the earlier map that it is; -1: none known
   double miss_likelihood = 1.0;  ///< of all frames that did not show it though it is expected
   bool is_expected = false;  ///< only the earlier map has it so far; its place follows the hypothesis's `map_offset`
+
+  ClassIndex mostLikelyClass() const {
+    Eigen::Index best = 0;
+    class_probs.maxCoeff(&best);
+    return static_cast<ClassIndex>(best);
+  }
 };
 
 using TrackedLandmarkPtr = std::shared_ptr<const TrackedLandmark>;

@@ -31,6 +31,9 @@ class MultiHypothesisTree {
   /// What is known of the probability of detection; learns from finished submaps.
   DetectionRate& detectionRate() { return tracking_.detectionRate(); }
 
+  /// How the detector confuses classes; learns from finished submaps.
+  ClassConfusion& confusion() { return model_.confusion(); }
+
   /// Where the submap lies in the earlier map.
   const MapBranching& mapBranching() const { return branching_; }
 

@@ -18,7 +18,7 @@ class LandmarkTracking {
 
   /// The landmark after a detection (submap frame) that was assigned to it.
   TrackedLandmarkPtr updated(const AssociationModel& model, const TrackedLandmark& landmark,
-                             const Measurement& measurement, const TreeInput& input, const Candidate& candidate) const;
+                             const Measurement& detected, const TreeInput& input, const Candidate& candidate) const;
 
   /// A landmark that a detection (submap frame) begins.
   TrackedLandmarkPtr begun(const AssociationModel& model, const Measurement& measurement, const TreeInput& input) const;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -67,12 +69,17 @@ class Mapper {
   };
 
   void begin(Stamp stamp, const Pose& T_odom_base);
-  Measurement makeMeasurement(const Detection& detection) const;
+  Measurement makeMeasurement(const Detection& detection);
+  std::shared_ptr<const std::vector<ClassNoise>> noiseOfClasses(double range_m);
   std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
   void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
   void joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const;
+  void carry(const MixtureLandmark& landmark);
   void learnDetectionRate(const std::vector<FusedAssociations>& associations,
                           const std::vector<MixtureLandmark>& landmarks);
+  bool learnsConfusion() const;
+  void learnConfusion(const std::vector<FusedAssociations>& associations,
+                      const std::vector<MixtureLandmark>& landmarks);
   BiasStretch biasStretch(const std::vector<FusedAssociations>& associations) const;
 
   MapperConfig config_;
@@ -80,6 +87,8 @@ class Mapper {
   DetectorCalibration calibration_;
   CentroidBias bias_;
   MultiHypothesisTree tree_;
+  /// Of the present frame, by range; null until a detection there asks for it.
+  std::array<std::shared_ptr<const std::vector<ClassNoise>>, DetectorCalibration::kRangeBins> noise_of_class_;
   EarlierMapProvider earlier_map_provider_;
   LandmarkId next_landmark_ = 1;
   int index_ = -1;

@@ -29,11 +29,13 @@ struct AssociationConfig {
   double max_gate_m = 6.0;
   CountPrior count_prior = CountPrior::kLinear;
   int count_prior_cap = 20;
-  double concentration = 200.0;
+  double concentration = 100.0;
   double false_positive_rate = 0.001;
   double map_volume_m3 = 30000.0;
   ClassModel class_model = ClassModel::kConfusion;
   double confusion_prob = 0.1;
+  double confusion_samples = 100.0;
+  bool learn_confusion = true;
   double new_density = 1.0;
   double false_positive_density = 1.0;
   double outlier_prob = 0.05;
@@ -80,7 +82,8 @@ struct MapperConfig {
 
 /// The defaults that belong to an estimator. The baselines are those of the paper: they have neither the Dirichlet
 /// process's count prior nor what goes beyond the paper (pose correction, heavy tails, split objects, merging of
-/// duplicates, centroid bias, alignment with an earlier map); each of these can be switched on for them by its own key.
+/// duplicates, centroid bias, learned confusion of classes, alignment with an earlier map); each of these can be
+/// switched on for them by its own key.
 MapperConfig defaultsOf(Estimator estimator);
 
 void describe(AssociationConfig& config, Fields& fields);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "semantic_mht_slam/models/class_table.h"
+
+namespace semantic_mht_slam {
+
+struct Measurement;
+
+/// Noise of the centroids of a class's objects, as a detector without stated covariances measures them at some range.
+struct ClassNoise {
+  Eigen::Vector3d stddev_m = Eigen::Vector3d::Zero();  ///< along the ray in the plane, across it, vertically
+  double outlier_variance_m2 = 0.0;                    ///< added if the centroid is far off
+  double wander_variance_per_m = 0.0;                  ///< growth with the distance driven
+};
+
+/// The measurement with the noise that it has if it shows an object of a class other than the detected one: how far a
+/// centroid is off depends on what it is the centroid of (a bush that is called a trunk is as wide as ever). A
+/// measurement whose noise was stated by the detector stays as it is.
+Measurement ofObject(const Measurement& measurement, ClassIndex object_class);
+
+}  // namespace semantic_mht_slam
