@@ -16,8 +16,9 @@ ClassTable makeTable(double stddev_m) {
 }
 
 /// Drives 300 m past objects 10 m apart; noise along the line of sight, across it and vertically.
-DetectorCalibration drive(const Eigen::Vector3d& noise_m, double wander_m_per_m, double clutter_per_frame) {
-  DetectorCalibration calibration({}, makeTable(0.5));
+DetectorCalibration drive(const Eigen::Vector3d& noise_m, double wander_m_per_m, double clutter_per_frame,
+                          double table_stddev_m = 0.5) {
+  DetectorCalibration calibration({}, makeTable(table_stddev_m));
   Rng rng(1);
   for (int f = 0; f < 300; ++f) {
     const Pose T_odom_base{expRotation({0.0, 0.0, 0.01 * f}), {static_cast<double>(f), 0.0, 0.0}};
@@ -53,6 +54,12 @@ TEST(DetectorCalibrationTest, FindsTheNoiseWhateverTheClassTableSaid) {
         EXPECT_NEAR(found_m[i], noise_m[i], 0.2 * noise_m[i]) << range_m << " m, direction " << i;
     }
   }
+}
+
+TEST(DetectorCalibrationTest, TheNoiseOfAWideClassIsNotCutShortByTheReachOfTheComparison) {
+  const Eigen::Vector3d found_m = drive({1.9, 1.9, 0.95}, 0.0, 0.0, 1.9).noiseStddev(0, 20.0);
+  EXPECT_NEAR(found_m[0], 1.9, 0.2);
+  EXPECT_NEAR(found_m[1], 1.9, 0.2);
 }
 
 TEST(DetectorCalibrationTest, ClutterHardlyChangesIt) {
