@@ -23,6 +23,8 @@ namespace {
 const char* const kGraphs[] = {"intel",      "manhattan", "MIT",      "CSAIL",   "parking-garage",
                                "sphere2500", "torus3D",   "kitti_00", "kitti_05"};
 
+constexpr int kOnlineRuns = 3;
+
 G2oFile load(const std::string& name) {
   const char* data = std::getenv("SEMANTIC_MHT_SLAM_DATA");
   return readG2o(std::string(data == nullptr ? "." : data) + "/pose_graphs/" + name + ".g2o");
@@ -100,7 +102,21 @@ void countDecisions(benchmark::State& state, const PoseGraph& graph, const Simul
   state.counters["right_out"] = right_out;
 }
 
-/// `growth`: mean of the last 100 calls over the mean of those around submap 500.
+/// CPU time of every `add + optimise`.
+std::vector<double> driveThrough(const SimulatedDrive& drive, PoseGraph& graph) {
+  std::vector<double> call_ms;
+  for (const auto& step : drive.steps) {
+    const double start = cpuSeconds();
+    graph.addSubmap(step.node);
+    for (const LoopConstraint& loop : step.loops) graph.addLoopClosure(loop);
+    graph.optimize();
+    call_ms.push_back(1e3 * (cpuSeconds() - start));
+  }
+  return call_ms;
+}
+
+/// `growth`: mean of the last 100 calls over the mean of those around submap 500. Of each call the fastest of three
+/// runs, which do the same to the last bit: other work on the machine costs processor time too.
 void online(benchmark::State& state) {
   SimulatedDriveOptions options;
   options.resighted_landmarks = state.range(1) != 0;
@@ -108,19 +124,19 @@ void online(benchmark::State& state) {
   const SimulatedDrive drive = simulateDrive(options, rng);
   for (auto _ : state) {
     PoseGraph graph;
-    std::vector<double> call_ms;
-    for (const auto& step : drive.steps) {
-      const double start = cpuSeconds();
-      graph.addSubmap(step.node);
-      for (const LoopConstraint& loop : step.loops) graph.addLoopClosure(loop);
-      graph.optimize();
-      call_ms.push_back(1e3 * (cpuSeconds() - start));
+    std::vector<double> call_ms = driveThrough(drive, graph);
+    for (int run = 1; run < kOnlineRuns; ++run) {
+      PoseGraph same;
+      const std::vector<double> again_ms = driveThrough(drive, same);
+      for (std::size_t i = 0; i < call_ms.size(); ++i) call_ms[i] = std::min(call_ms[i], again_ms[i]);
     }
-    const auto mean = [&](std::size_t first, std::size_t end) {
+    const auto mean = [&](std::size_t begin, std::size_t end) {
       double sum = 0.0;
-      for (std::size_t i = first; i < end; ++i) sum += call_ms[i];
-      return sum / static_cast<double>(end - first);
+      for (std::size_t i = begin; i < end; ++i) sum += call_ms[i];
+      return sum / static_cast<double>(end - begin);
     };
+    state.counters["at_500_ms"] = mean(450, 550);
+    state.counters["last_ms"] = mean(1900, 2000);
     state.counters["growth"] = mean(1900, 2000) / mean(450, 550);
     std::sort(call_ms.begin(), call_ms.end());
     state.counters["p50_ms"] = call_ms[1000];

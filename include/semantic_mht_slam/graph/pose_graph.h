@@ -90,8 +90,8 @@ struct PoseGraphUpdate {
 /// The time of a call does not grow with the length of the drive as that of a batch solution does: the newest submaps
 /// are optimised with everything they see while the rest is held; a new loop closure is solved on a skeleton that has
 /// one node a chunk of submaps and condensed factors between them (Grisetti et al., Robust optimization of factor
-/// graphs by using condensed measurements, IROS 2012); the submaps between the nodes follow by interpolation, and the
-/// chunks that were bent most are optimised in full over the next calls. A graph that is still small is optimised as a
+/// graphs by using condensed measurements, IROS 2012); the submaps between the nodes follow as odometry lets them, and
+/// the pieces that were bent most are optimised in full now and then. A graph that is still small is optimised as a
 /// whole instead when a loop closes. `optimizeFully` solves everything at once, whatever the size.
 ///
 /// Wrong input (a covariance that is not positive definite, numbers that are not finite, unknown submaps) throws
