@@ -56,7 +56,8 @@ int run(int argc, char** argv) {
   if (arguments.output.empty()) throw InputError("--output is needed");
 
   const ClassTable classes = readClassTable(packageConfigFile("classes_semantic_kitti.yaml"));
-  const SimulatedDrive drive = simulateDrive(loadScenario(arguments.scenario, arguments.settings), classes, seedOf(arguments));
+  const SimulatedDrive drive =
+      simulateDrive(loadScenario(arguments.scenario, arguments.settings), classes, seedOf(arguments));
   StagedFolder output(arguments.output);
   writeSimulatedDataset(drive, classes, output.staging());
   // The bag is made from the files, so that both hold the same digits.

@@ -53,13 +53,20 @@ MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const Syst
   return header;
 }
 
-MapSection toMessage(const StateSection& section) {
-  MapSection message;
-  message.name = section.name;
-  message.version = static_cast<std::uint32_t>(section.version);
-  message.data.assign(section.bytes.begin(), section.bytes.end());
-  message.digest = digestOf(message.data);
-  return message;
+/// One after the other; none so large that reading it could not be interrupted.
+std::vector<MapSection> toMessages(const StateSection& section) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20U;
+  std::vector<MapSection> messages;
+  for (std::size_t begin = 0; begin < section.bytes.size() || messages.empty(); begin += kPiece) {
+    const std::string piece = section.bytes.substr(begin, kPiece);
+    MapSection message;
+    message.name = section.name;
+    message.version = static_cast<std::uint32_t>(section.version);
+    message.data.assign(piece.begin(), piece.end());
+    message.digest = digestOf(message.data);
+    messages.push_back(std::move(message));
+  }
+  return messages;
 }
 
 std::string describeClass(int id, const std::string& name, bool is_static) {
@@ -140,8 +147,9 @@ class MapReader {
       const auto section = instantiate<MapSection>(instance);
       require(digestOf(section->data) == section->digest,
               "damaged: the digest of section '" + section->name + "' is wrong");
-      map.state.sections.push_back(
-          {section->name, static_cast<int>(section->version), std::string(section->data.begin(), section->data.end())});
+      const bool goes_on = !map.state.sections.empty() && map.state.sections.back().name == section->name;
+      if (!goes_on) map.state.sections.push_back({section->name, static_cast<int>(section->version), {}});
+      map.state.sections.back().bytes.append(section->data.begin(), section->data.end());
     }
     for (const std::string& name : header.sections) {
       require(std::any_of(map.state.sections.begin(), map.state.sections.end(),
@@ -172,7 +180,9 @@ std::size_t writeMapFile(const std::string& path, const SavedMap& map, const Sys
     bag.setCompression(rosbag::compression::BZ2);
     const ros::Time time = toRosTime(stamp);
     bag.write(kHeaderTopic, time, makeHeader(map, message, config));
-    for (const StateSection& section : map.state.sections) bag.write(kSectionTopic, time, toMessage(section));
+    for (const StateSection& section : map.state.sections) {
+      for (const MapSection& piece : toMessages(section)) bag.write(kSectionTopic, time, piece);
+    }
     bag.write(kMapTopic, time, message);
     bag.write(kTrajectoryTopic, time, toPath(map.trajectory, config.node.map_frame));
   });

@@ -109,6 +109,19 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState&
     (this->*section.transfer)(archive);
     archive.requireEnd();
   }
+  if (localizer_) localizeNearLastFix();
+}
+
+void Slam::localizeNearLastFix() {
+  const std::vector<MapFix>& fixes = sessions_.back().fixes;
+  const std::optional<StampedPose> odometry = latestOdometry();
+  if (fixes.empty() || !odometry) return;
+  const MapFix& fix = fixes.back();
+  const double way_m = (odometry->T_world_base.translation_m - fix.T_odom_base.translation_m).norm();
+  if (way_m > localizer_config_.lost_after_m) return;
+  const RevisitConfig noise;
+  localizer_->expectAt(fix.T_map_base * fix.T_odom_base.inverse(), noise.base_stddev_m + noise.drift_per_m * way_m);
+  is_following_ = is_mapping_wanted_;
 }
 
 }  // namespace semantic_mht_slam

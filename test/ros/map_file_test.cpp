@@ -72,6 +72,24 @@ TEST_F(MapFileTest, WhatWasWrittenIsReadToTheLastBit) {
   EXPECT_TRUE(loaded.has_same_parameters);
 }
 
+TEST_F(MapFileTest, LargeSectionsComeBackAndAreNeverReadInOnePiece) {
+  SavedMap map = map_;
+  map.state.sections.push_back({"large", 3, std::string((5U << 20U) + 7U, ' ')});
+  Rng rng(1);
+  for (char& byte : map.state.sections.back().bytes) byte = static_cast<char>(rng.bits());
+  map.state.sections.push_back({"empty", 1, ""});
+  writeMapFile(path_, map, config_, classes_);
+  const LoadedMap loaded = read(path_);
+  ASSERT_EQ(loaded.state.sections.size(), map.state.sections.size());
+  const StateSection& large = loaded.state.sections[map.state.sections.size() - 2];
+  EXPECT_TRUE(large.bytes == map.state.sections[map.state.sections.size() - 2].bytes);
+  EXPECT_EQ(large.version, 3);
+  EXPECT_EQ(loaded.state.sections.back().name, "empty");
+  int asked = 0;
+  readMapFile(path_, config_, classes_, [&] { return ++asked > 0; });
+  EXPECT_GE(asked, 13) << "the header, five small sections, six pieces, the empty one";
+}
+
 TEST_F(MapFileTest, LandmarksAndTrajectoryCanBeReadWithoutTheState) {
   rosbag::Bag bag(path_, rosbag::bagmode::Read);
   rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{"/map"}));

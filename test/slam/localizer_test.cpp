@@ -136,6 +136,21 @@ TEST_P(KnownPlaceTest, TheMapDoesNotGrowInPlacesThatAreKnownAndThePoseStaysGood)
   EXPECT_EQ(slam_.trajectory().size(), 2400U);
 }
 
+TEST_P(KnownPlaceTest, AMapThatWasSavedAtAKnownPlaceIsFollowedAtOnce) {
+  drive_.feed(slam_, 0, 1300);
+  ASSERT_TRUE(slam_.isFollowing());
+  Slam loaded(config(), makeStreetClasses(), slam_.snapshot());
+  EXPECT_TRUE(loaded.isFollowing());
+  EXPECT_TRUE(loaded.isLocated());
+  const std::size_t before = loaded.backEnd()->keyframes().keyframes.size();
+  for (int i = 1300; i < 1500; ++i) {
+    drive_.feed(loaded, i, i + 1);
+    const Pose T_map_base = loaded.latestPose()->T_world_base;
+    EXPECT_LT((T_map_base.translation_m - drive_.truthAt(i).translation_m).head<2>().norm(), 1.5) << i;
+  }
+  EXPECT_EQ(loaded.backEnd()->keyframes().keyframes.size(), before);
+}
+
 class LeavingKnownPlaceTest : public KnownPlaceTest {
  protected:
   LeavingKnownPlaceTest() : KnownPlaceTest(1560) {}

@@ -163,6 +163,7 @@ class Slam {
   void localizeBy(const Frame& frame);
   void endSubmap();
   void follow();
+  void localizeNearLastFix();
   bool isKnown(const Eigen::Vector3d& position_m) const;
   bool isKnownSince(std::size_t first_keyframe) const;
   void take(Submap submap);
