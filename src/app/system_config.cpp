@@ -49,6 +49,9 @@ void describe(NodeConfig& config, Fields& fields) {
              "How long objects wait for the transform of their sensor; odometry never waits for them.");
   fields.add("trajectory_period", config.trajectory_period_s, "s", {0.01, 60.0},
              "Wall time between publications of the trajectory.");
+  fields.add(
+      "trajectory_poses", config.trajectory_poses, "poses", {2, 10000000},
+      "Most poses in the topics trajectory and markers/odometry; of longer drives every 2nd, 4th, ... is shown.");
   fields.add("reset_after_jump_back", config.reset_after_jump_back_s, "s", {0.0, 3600.0},
              "Odometry whose stamp falls back by more than this starts a new map.");
   fields.group("live", config.live);

@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/graph_view.h"
 #include "semantic_mht_slam/ros/markers.h"
+#include "semantic_mht_slam/ros/thinned.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -81,8 +82,9 @@ void SlamPublisher::publishMapMarkers(const Slam& slam, const LiveConfig& live) 
 void SlamPublisher::publishTrajectory(const TrajectoryTurn& turn, const std::vector<StampedPose>& trajectory,
                                       const std::vector<Pose>& T_odom_base) {
   if (!turn.owns_lock()) throw std::logic_error("SlamPublisher: a trajectory is published by who has the turn");
-  trajectory_publisher_.publish(toPath(trajectory, config_.map_frame));
-  odometry_publisher_.publish(toOdometryMarkers(T_odom_base, config_.map_frame));
+  const auto most = static_cast<std::size_t>(config_.trajectory_poses);
+  trajectory_publisher_.publish(toPath(thinned(trajectory, most), config_.map_frame));
+  odometry_publisher_.publish(toOdometryMarkers(thinned(T_odom_base, most), config_.map_frame));
 }
 
 void SlamPublisher::startAgain(const Slam& slam) {

@@ -18,6 +18,7 @@ struct NodeConfig {
   int queue_size = 2000;
   double tf_timeout_s = 2.0;
   double trajectory_period_s = 0.5;
+  int trajectory_poses = 20000;
   double reset_after_jump_back_s = 1.0;
   LiveConfig live;
 };
