@@ -56,6 +56,7 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
   const SubmapConfig& submap = config.mapper.submap;  // what is within its propagation is carried on by the mapper
   const double earlier_m = std::max(config.back_end.revisit.min_driven_m, submap.propagation_m);
   earlier_after_submaps_ = static_cast<int>(earlier_m / submap.length_m) + 2;
+  if (!config.back_end.close_loops) return;
   mapper_->setEarlierMapProvider([this](const Pose& T_odom_submap) { return earlierMap(T_odom_submap); });
 }
 

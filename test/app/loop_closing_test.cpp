@@ -76,14 +76,14 @@ TEST_P(LoopClosingTest, AcceptedClosuresAreTrue) {
   EXPECT_GT(accepted, 3U);
 }
 
-TEST_P(LoopClosingTest, LandmarksOfBothPassesBecomeOne) {
-  // Detections of one true landmark on two passes should end in one landmark of the map.
+/// Share of the detections of static landmarks, both passes together, that is in one landmark of the map.
+double shareInOneLandmark(const SimulatedDrive& drive, const std::vector<DetectionAssociation>& associations) {
   std::map<int, std::map<LandmarkId, int>> ids_of;
   int static_detections = 0;
-  for (const DetectionAssociation& association : result_.associations) {
-    const int truth = drive_.truth_ids[association.frame][static_cast<std::size_t>(association.row)];
+  for (const DetectionAssociation& association : associations) {
+    const int truth = drive.truth_ids[association.frame][static_cast<std::size_t>(association.row)];
     if (truth < 0 || association.landmark == kNoLandmark) continue;
-    const ClassIndex class_index = drive_.landmarks[static_cast<std::size_t>(truth)].class_index;
+    const ClassIndex class_index = drive.landmarks[static_cast<std::size_t>(truth)].class_index;
     if (kittiClasses()[class_index].transition != Transition::kDirac) continue;
     ++ids_of[truth][association.landmark];
     ++static_detections;
@@ -94,7 +94,20 @@ TEST_P(LoopClosingTest, LandmarksOfBothPassesBecomeOne) {
     for (const auto& [id, count] : ids) largest = std::max(largest, count);
     with_largest += largest;
   }
-  EXPECT_GT(with_largest, 0.9 * static_detections);
+  return static_cast<double>(with_largest) / static_detections;
+}
+
+TEST_P(LoopClosingTest, LandmarksOfBothPassesBecomeOne) {
+  EXPECT_GT(shareInOneLandmark(drive_, result_.associations), 0.9);
+}
+
+TEST_P(LoopClosingTest, SwitchedOffNothingTiesThePassesTogether) {
+  SlamConfig config = defaultsOf(Method::kDpmhm);
+  config.back_end.close_loops = false;
+  const RunResult open = run(recording_, config);
+  EXPECT_TRUE(open.loop_closures.empty());
+  EXPECT_LT(shareInOneLandmark(drive_, open.associations), shareInOneLandmark(drive_, result_.associations) - 0.1);
+  EXPECT_GT(se3Error(recording_, open.trajectory), 1.5 * se3Error(recording_, result_.trajectory));
 }
 
 TEST_P(LoopClosingTest, TheSameInputGivesTheSameBytes) {
