@@ -163,7 +163,7 @@ void SlamNode::startAgain() {
 
 void SlamNode::handle(const SemanticObjectArray& message) {
   const Stamp stamp = toStamp(message.header.stamp);
-  const bool falls_back = !last_objects_ || jump_.isBack(stamp, last_objects_);
+  const bool falls_back = jump_.isBack(stamp, last_objects_);
   last_objects_ = stamp;
   waiting_objects_.push_back(
       {message, falls_back, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});

@@ -207,7 +207,9 @@ TEST_F(SlamNodeTest, ObjectsThatOvertakeTheOdometryOfAJumpBelongToTheNewMap) {
     odometry.publish(toOdometry({stamp, Pose::identity()}, "odom", "base_link"));
     ros::WallDuration(0.02).sleep();
   };
+  objects.publish(toMessage(100 * kOrigin + kOrigin / 20, "base_link", {}, makeTwoClasses()));
   for (int i = 0; i < 10; ++i) publish(100 * kOrigin + i * kOrigin / 10);
+  ros::WallDuration(0.3).sleep();
   trees_.clear();
   const Stamp begin = 20 * kOrigin;
   objects.publish(toMessage(begin, "base_link", {}, makeTwoClasses()));
