@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/evaluation/landmark_error.h"
@@ -13,9 +14,11 @@
 #include "semantic_mht_slam/io/csv_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
+#include "semantic_mht_slam/io/yaml_file.h"
 
 #include "evaluate_commands.h"
 #include "evaluate_files.h"
+#include "evaluate_landmark_sightings.h"
 #include "program.h"
 
 namespace semantic_mht_slam {
@@ -28,13 +31,14 @@ constexpr const char* kUsage =
     "\n"
     "usage: evaluate landmarks --truth landmarks.csv --landmarks landmarks.csv [--radius R] [--class NAME ...]\n"
     "           [--ignore-class] [--poses poses.txt [--calib calib.txt] [--trajectory trajectory.txt] [--align se3]]\n"
-    "           [--json] [--output DIR]\n"
+    "           [--objects objects.csv [--min-frames N]] [--json] [--output DIR]\n"
     "\n"
     "Both files hold columns x,y and optionally z,class in metres, or are rows x,y[,z] without a header. The truth is "
     "in\n"
     "the Velodyne frame of the first true pose. With --poses ghosts are counted per kilometre; with --trajectory the "
     "map\n"
-    "is moved by the alignment of the trajectory that it was made along.\n";
+    "is moved by the alignment of the trajectory that it was made along. With --objects, true landmarks that fewer\n"
+    "than N frames show (an object within the radius) count neither as missed nor as ghosts.\n";
 
 struct Options {
   std::string truth_path;
@@ -44,8 +48,11 @@ struct Options {
   std::string calibration_path;
   std::string alignment;
   std::string folder;
+  std::string objects_path;
+  std::string table_path;
   std::vector<std::string> classes;
   double radius_m = 1.0;
+  int min_frames = 5;
   bool ignore_class = false;
   bool as_json = false;
 };
@@ -123,13 +130,17 @@ std::vector<Eigen::Vector3d> positions(const std::vector<Pose>& poses, const Pos
   return result;
 }
 
+Pose velodyneCalibration(const Options& options) {
+  return readCalibration(options.calibration_path.empty() ? calibrationBeside(options.poses_path)
+                                                          : options.calibration_path);
+}
+
 /// From the frame of the map to that of the true landmarks, by the trajectories of the Velodyne in both.
 Pose alignment(const Options& options, const std::vector<Pose>& T_world_cam0) {
   if (options.trajectory_path.empty() || options.alignment == "none") return Pose::identity();
   const std::vector<Pose> estimate_cam0 = readKittiTrajectory(options.trajectory_path);
   requireSameLength(options.poses_path, T_world_cam0.size(), options.trajectory_path, estimate_cam0.size());
-  const Pose T_cam0_velodyne = readCalibration(options.calibration_path.empty() ? calibrationBeside(options.poses_path)
-                                                                                : options.calibration_path);
+  const Pose T_cam0_velodyne = velodyneCalibration(options);
   const std::vector<Pose> truth = inVelodyneFrame(T_world_cam0, T_cam0_velodyne);
   const std::vector<Eigen::Vector3d> true_m = positions(truth, truth.front().inverse());
   const std::vector<Eigen::Vector3d> estimated_m =
@@ -216,7 +227,10 @@ po::options_description describe(Options& values) {
       "trajectory", po::value(&values.trajectory_path), "estimated poses of the map's run, KITTI format")(
       "calib", po::value(&values.calibration_path), "calibration; default: calib.txt beside the poses")(
       "align", po::value(&values.alignment)->default_value("se3"), "se3, se2 or none")(
-      "json", po::bool_switch(&values.as_json), "print JSON in place of a table")(
+      "objects", po::value(&values.objects_path), "objects CSV of the run, Velodyne frame")(
+      "min-frames", po::value(&values.min_frames)->default_value(5), "frames that must show a landmark")(
+      "class-table", po::value(&values.table_path)->default_value(packageConfigFile("classes_semantic_kitti.yaml")),
+      "classes of the objects")("json", po::bool_switch(&values.as_json), "print JSON in place of a table")(
       "output", po::value(&values.folder), "folder for landmarks.json, landmark_matches.csv and landmarks.svg");
   return options;
 }
@@ -227,6 +241,26 @@ void check(const Options& options) {
     throw InputError("--align is '" + options.alignment + "', one of se3, se2 and none was expected");
   }
   if (!options.trajectory_path.empty() && options.poses_path.empty()) throw InputError("--trajectory needs --poses");
+  if (!options.objects_path.empty() && options.poses_path.empty()) throw InputError("--objects needs --poses");
+  if (options.min_frames < 1) throw InputError("--min-frames must be at least 1");
+}
+
+/// Without those that hardly a frame shows.
+NumberedLandmarks seenOnes(const Options& options, const NumberedLandmarks& truth) {
+  const Pose T_cam0_velodyne = velodyneCalibration(options);
+  const std::vector<Pose> T_world_velodyne = inVelodyneFrame(readKittiTrajectory(options.poses_path), T_cam0_velodyne);
+  std::vector<Pose> T_truth_velodyne;
+  for (const Pose& pose : T_world_velodyne) T_truth_velodyne.push_back(T_world_velodyne.front().inverse() * pose);
+  const std::vector<int> frames =
+      framesThatShow(truth.landmarks, options.objects_path, readClassTable(options.table_path), options.classes,
+                     T_truth_velodyne, options.radius_m);
+  NumberedLandmarks result;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i] < options.min_frames) continue;
+    result.ids.push_back(truth.ids[i]);
+    result.landmarks.push_back(truth.landmarks[i]);
+  }
+  return result;
 }
 
 }  // namespace
@@ -235,10 +269,17 @@ int evaluateLandmarks(const std::vector<std::string>& arguments) {
   Options options;
   if (!parseOrHelp(arguments, kUsage, describe(options))) return 0;
   check(options);
-  const NumberedLandmarks truth = readLandmarks(options.truth_path, options.classes);
+  const NumberedLandmarks all = readLandmarks(options.truth_path, options.classes);
+  const NumberedLandmarks truth = options.objects_path.empty() ? all : seenOnes(options, all);
   const NumberedLandmarks map = readLandmarks(options.map_path, options.classes);
   const LandmarkComparison how = comparison(options);
-  const LandmarkError error = landmarkError(truth.landmarks, map.landmarks, how);
+  LandmarkError error = landmarkError(truth.landmarks, map.landmarks, how);
+  if (!options.objects_path.empty()) {  // what stands at a landmark that is hardly seen is no ghost
+    const LandmarkError of_all = landmarkError(all.landmarks, map.landmarks, how);
+    error.ghosts = of_all.ghosts;
+    error.ghosts_per_km = of_all.ghosts_per_km;
+    error.precision = of_all.precision;
+  }
   const nlohmann::json json = toJson(error);
   OutputFiles files = {{"landmarks.json", jsonText(json)}};
   if (!options.folder.empty()) {

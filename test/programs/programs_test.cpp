@@ -68,6 +68,23 @@ TEST_F(ProgramsTest, OfflineRunWritesEveryFileAndTwoRunsWriteTheSameBytes) {
   EXPECT_NE(readFile(output_ + "/report.json").find("\"se3_m\""), std::string::npos);
 }
 
+TEST_F(ProgramsTest, LandmarksThatHardlyAFrameShowsAreNotMissed) {
+  ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments()).exit_code, 0);
+  const auto figureWith = [&](const std::string& name, const std::string& options) {
+    const ProgramResult result =
+        runProgramOfPackage("evaluate", "landmarks --json --truth '" + drive_ + "/landmarks.csv' --poses '" + drive_ +
+                                            "/poses.txt' --landmarks '" + output_ + "/landmarks.csv' " + options);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    const std::size_t key = result.output.find("\"" + name + "\": ");
+    return key == std::string::npos ? -1.0 : std::stod(result.output.substr(key + name.size() + 4));
+  };
+  const std::string objects = "--objects '" + drive_ + "/objects.csv' ";
+  EXPECT_LT(figureWith("true_landmarks", objects), figureWith("true_landmarks", ""));
+  EXPECT_LT(figureWith("true_landmarks", objects + "--min-frames 20"), figureWith("true_landmarks", objects));
+  EXPECT_GT(figureWith("recall", objects), figureWith("recall", ""));
+  EXPECT_EQ(figureWith("ghosts", objects), figureWith("ghosts", "")) << "what stands at a true landmark is no ghost";
+}
+
 TEST_F(ProgramsTest, SimulationWithTheSameSeedWritesTheSameBytesAndAnotherSeedOthers) {
   const std::string scenario = "--scenario '" + std::string(SMHT_SOURCE_DIR) + "/config/scenarios/short.yaml' ";
   ASSERT_EQ(runProgramOfPackage("simulate_drive", scenario + "--output '" + folder_ / "same" + "'").exit_code, 0);
