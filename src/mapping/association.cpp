@@ -43,7 +43,8 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
     : config_(config),
       class_count_(classes.size()),
       confusion_(classes.size(), wrongClassProb(config.association), config.association.confusion_samples),
-      log_map_volume_(std::log(config.association.map_volume_m3)),
+      log_uniform_density_(-std::log(config.association.map_volume_m3) - std::log(static_cast<double>(class_count_))),
+      log_false_positives_(std::log(config.association.false_positive_density)),
       gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
   if (class_count_ > kMaxClasses) throw std::invalid_argument("more classes than a landmark can hold");
   for (const ClassInfo& info : classes.all()) {
@@ -93,6 +94,7 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
   if (!narrow) return false;
   candidate.mahalanobis_sq = narrow->mahalanobis_sq;
   log_density = narrow->log_density;
+  candidate.log_part_likelihood = narrow->log_density;
   const double outlier_prob = config_.association.outlier_prob;
   if (outlier_prob == 0.0) return true;
   Eigen::Matrix3d wide_cov = cov;
@@ -103,6 +105,7 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
   const double outlier = std::log(outlier_prob) + wide->log_density;
   candidate.is_outlier = outlier > inlier;
   candidate.mahalanobis_sq = wide->mahalanobis_sq;
+  candidate.log_part_likelihood = wide->log_density;
   log_density = std::max(inlier, outlier) + std::log1p(std::exp(-std::abs(inlier - outlier)));
   return true;
 }
@@ -130,6 +133,7 @@ void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const 
     if (candidate.mahalanobis_sq > gate_mahalanobis_sq_) continue;
     candidate.landmark = static_cast<int>(j);
     candidate.log_likelihood = log_density + log_class;
+    candidate.log_part_likelihood += log_class;
     candidates.push_back(candidate);
   }
 }
@@ -155,20 +159,18 @@ void AssociationModel::formulate(const MapHypothesis& hypothesis, const std::vec
 
 void AssociationModel::addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const {
   const AssociationConfig& association = config_.association;
-  const double log_class_uniform = -std::log(static_cast<double>(class_count_));
-  const double log_new = std::log(association.concentration) - log_map_volume_ + log_class_uniform;
+  const double log_new = std::log(association.concentration) + log_uniform_density_;
   const double false_positives =
       hypothesis.false_positives > 0 ? hypothesis.false_positives : association.concentration;
   for (int i = 0; i < problem.measurements; ++i) {
     problem.costs.addRow();
-    double log_false =
-        std::log(association.false_positive_rate * false_positives) - log_map_volume_ + log_class_uniform;
+    double log_false = std::log(association.false_positive_rate * false_positives) + log_uniform_density_;
     for (const Candidate& candidate : problem.gated[static_cast<std::size_t>(i)]) {
       const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(candidate.landmark)];
       const double log_count = landmark.is_from_earlier_submap ? 0.0 : logCountPrior(landmark.observations);
       problem.costs.add(candidate.landmark, -(log_count + candidate.log_likelihood));
       // A false positive is unlikely where a landmark explains the measurement better than the uniform density does.
-      log_false -= std::max(0.0, candidate.log_likelihood - log_class_uniform + log_map_volume_);
+      log_false -= std::max(0.0, candidate.log_likelihood - log_uniform_density_);
     }
     problem.costs.add(problem.landmarks + i, -log_new);
     problem.costs.add(problem.landmarks + problem.measurements + i, -log_false);
@@ -177,15 +179,13 @@ void AssociationModel::addDirichletCosts(const MapHypothesis& hypothesis, Associ
 
 void AssociationModel::addLikelihoodCosts(AssociationProblem& problem) const {
   const AssociationConfig& association = config_.association;
-  const double log_uniform = -log_map_volume_ - std::log(static_cast<double>(class_count_));
   for (int i = 0; i < problem.measurements; ++i) {
     problem.costs.addRow();
     for (const Candidate& candidate : problem.gated[static_cast<std::size_t>(i)]) {
       problem.costs.add(candidate.landmark, -candidate.log_likelihood);
     }
-    problem.costs.add(problem.landmarks + i, -(std::log(association.new_density) + log_uniform));
-    problem.costs.add(problem.landmarks + problem.measurements + i,
-                      -(std::log(association.false_positive_density) + log_uniform));
+    problem.costs.add(problem.landmarks + i, -(std::log(association.new_density) + log_uniform_density_));
+    problem.costs.add(problem.landmarks + problem.measurements + i, -logClutterDensity());
   }
 }
 

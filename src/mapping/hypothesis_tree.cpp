@@ -170,7 +170,7 @@ void MultiHypothesisTree::assign(int measurement, int column, const MapHypothesi
     landmark = child.landmarks[j]->id;
     return;
   }
-  child.log_weight -= model_.logMapVolume() + std::log(static_cast<double>(class_count_));
+  child.log_weight += model_.logUniformDensity();
   const int whole = splitOf(parent, measurement, growth.is_seen);
   if (whole >= 0) {
     landmark = parent.landmarks[static_cast<std::size_t>(whole)]->id;
@@ -184,14 +184,14 @@ void MultiHypothesisTree::assign(int measurement, int column, const MapHypothesi
 }
 
 int MultiHypothesisTree::splitOf(const MapHypothesis& parent, int measurement, const std::vector<char>& is_seen) const {
-  const double factor = config_.association.split_distance_factor;
+  const double split_prob = config_.association.split_prob;
   int whole = -1;
-  double nearest = factor * factor * model_.gateMahalanobisSq();
-  if (config_.estimator == Estimator::kUkf || nearest == 0.0) return -1;
+  if (config_.estimator == Estimator::kUkf || split_prob == 0.0) return whole;
+  double likeliest = model_.logClutterDensity() - std::log(split_prob);
   for (const Candidate& candidate : problem_.gated[static_cast<std::size_t>(measurement)]) {
     const auto j = static_cast<std::size_t>(candidate.landmark);
-    if (is_seen[j] == 0 || parent.landmarks[j]->is_expected || candidate.mahalanobis_sq >= nearest) continue;
-    nearest = candidate.mahalanobis_sq;
+    if (is_seen[j] == 0 || parent.landmarks[j]->is_expected || candidate.log_part_likelihood <= likeliest) continue;
+    likeliest = candidate.log_part_likelihood;
     whole = candidate.landmark;
   }
   return whole;

@@ -17,9 +17,7 @@ constexpr double kMaxLogExistenceOdds = 20.0;  // what hundreds of frames behind
 }  // namespace
 
 LandmarkTracking::LandmarkTracking(const MapperConfig& config, const ClassTable& classes)
-    : config_(config),
-      rate_(config.detection, classes.size()),
-      log_class_count_(std::log(static_cast<double>(classes.size()))) {}
+    : config_(config), rate_(config.detection, classes.size()) {}
 
 std::optional<FilterUpdate> LandmarkTracking::filtered(const Gaussian3& predicted, const Measurement& measurement,
                                                        bool is_outlier) const {
@@ -64,10 +62,8 @@ TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, cons
   result->is_from_earlier_submap = false;
   result->last_submap = input.submap;
   // A detection where the landmark is speaks for it against clutter, which would be anywhere in the volume.
-  const double log_clutter =
-      std::log(config_.association.false_positive_density) - model.logMapVolume() - log_class_count_;
   applyHit(*result, detectionProb(landmark, input), config_.detection.visibility_switch_prob,
-           candidate.log_likelihood - log_clutter, kMaxLogExistenceOdds);
+           candidate.log_likelihood - model.logClutterDensity(), kMaxLogExistenceOdds);
   return result;
 }
 

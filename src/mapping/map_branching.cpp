@@ -149,10 +149,8 @@ MapHypothesis MapBranching::aligned(const MapHypothesis& leaf, const AlignmentHy
     if (taken.count(i) > 0 || earlier.existence_prob < kMinExistence) continue;
     TrackedLandmarkPtr landmark = expected(i, *child.map_offset, input);
     const double distance_m = (landmark->position.mean_m - input.T_submap_base.translation_m).head<2>().norm();
-    const auto place = std::lower_bound(child.landmarks.begin(), child.landmarks.end(), earlier.id,
-                                        [](const TrackedLandmarkPtr& known, LandmarkId id) { return known->id < id; });
-    const bool is_known = place != child.landmarks.end() && (*place)->id == earlier.id;
-    if (distance_m < reach_m && !is_known) child.landmarks.insert(place, std::move(landmark));
+    const LandmarkPlace known = findLandmark(child.landmarks, earlier.id);
+    if (distance_m < reach_m && !known.landmark) child.landmarks.insert(known.place, std::move(landmark));
   }
   return child;
 }

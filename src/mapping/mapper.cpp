@@ -29,11 +29,8 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
 
 /// What a hypothesis believes of a landmark's visibility; that it is seen, if the hypothesis does not have it.
 double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
-  const auto& landmarks = hypothesis.landmarks;
-  const auto found =
-      std::lower_bound(landmarks.begin(), landmarks.end(), id,
-                       [](const TrackedLandmarkPtr& known, LandmarkId wanted) { return known->id < wanted; });
-  return found != landmarks.end() && (*found)->id == id ? (*found)->visible_prob : 1.0;
+  const TrackedLandmark* landmark = findLandmark(hypothesis.landmarks, id).landmark;
+  return landmark != nullptr ? landmark->visible_prob : 1.0;
 }
 
 }  // namespace

@@ -39,9 +39,9 @@ void describe(AssociationConfig& config, Fields& fields) {
   fields.add("ukf_gate", config.ukf_gate_m, "m", {0.1, 100.0},
              "Gate of the ukf baseline's nearest-neighbour assignment.");
   fields.add(
-      "split_distance_factor", config.split_distance_factor, "", {0.0, 10.0},
-      "A detection that would be new, but stands beside a landmark that another one took, at less than this times "
-      "the landmark's gate, is a second part of it; 0: never (the paper).");
+      "split_prob", config.split_prob, "", {0.0, 0.9},
+      "Share of objects that are detected in two parts. A detection that would be new is a second part of a landmark "
+      "that another one took if that is likelier than clutter; 0: never (the paper).");
 }
 
 void describe(TreeConfig& config, Fields& fields) {
@@ -75,7 +75,7 @@ MapperConfig defaultsOf(Estimator estimator) {
   config.association.count_prior = CountPrior::kNone;
   config.association.outlier_prob = 0.0;
   config.association.learn_confusion = false;
-  config.association.split_distance_factor = 0.0;
+  config.association.split_prob = 0.0;
   config.submap.correct_pose = false;
   config.duplicates.merge = false;
   config.bias.enabled = false;

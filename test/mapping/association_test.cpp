@@ -41,7 +41,7 @@ MapperConfig makePaperConfig() {
   MapperConfig config;
   config.association.outlier_prob = 0.0;
   config.association.class_model = ClassModel::kDelta;
-  config.association.split_distance_factor = 0.0;
+  config.association.split_prob = 0.0;
   return config;
 }
 

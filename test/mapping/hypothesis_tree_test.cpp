@@ -85,5 +85,51 @@ TEST(HypothesisTreeTest, OrderOfLandmarksDoesNotChangeTheResult) {
   EXPECT_GT(most_hypotheses, 1U);  // else nothing was ambiguous
 }
 
+/// Where the two detections of a frame go that stand `distance_m` from each other, the first one on a well-known pole.
+std::vector<LandmarkId> landmarksOfTwoParts(double split_prob, double distance_m, ClassIndex second_class) {
+  MapperConfig config;
+  config.association.split_prob = split_prob;
+  MultiHypothesisTree tree(config, makeTable());
+  auto pole = std::make_shared<TrackedLandmark>();
+  pole->id = 1;
+  pole->position = {Eigen::Vector3d(10.0, 0.0, 0.0), 0.01 * Eigen::Matrix3d::Identity()};
+  pole->class_probs = ClassProbs::Zero(2);
+  pole->class_probs << 0.99, 0.01;
+  pole->observations = 20;
+  pole->log_existence_odds = 5.0;
+  tree.restart({pole});
+  TreeInput input;
+  for (const double y_m : {0.0, distance_m}) {
+    Measurement measurement;
+    measurement.position_m = {10.0, y_m, 0.0};
+    measurement.cov_m2 = 0.04 * Eigen::Matrix3d::Identity();
+    measurement.outlier_variance_m2.setConstant(0.36);
+    measurement.row = static_cast<int>(input.measurements.size());
+    measurement.id_if_new = 100 + static_cast<LandmarkId>(measurement.row);
+    measurement.class_index = measurement.row == 0 ? 0 : second_class;
+    input.measurements.push_back(measurement);
+  }
+  Rng rng(1);
+  tree.step(input, rng);
+  return fuseAssociations(tree.leaves()).front().landmark_of_measurement;
+}
+
+TEST(HypothesisTreeTest, SecondPartOfAnObjectGoesToItsLandmark) {
+  EXPECT_EQ(landmarksOfTwoParts(0.01, 1.0, 0), (std::vector<LandmarkId>{1, 1}));
+}
+
+TEST(HypothesisTreeTest, NeighbourTooFarToBeASecondPartIsALandmarkOfItsOwn) {
+  EXPECT_EQ(landmarksOfTwoParts(0.01, 4.0, 0), (std::vector<LandmarkId>{1, 101}));
+}
+
+TEST(HypothesisTreeTest, NeighbourOfAnotherClassIsALandmarkOfItsOwn) {
+  EXPECT_EQ(landmarksOfTwoParts(0.01, 1.75, 0), (std::vector<LandmarkId>{1, 1}));
+  EXPECT_EQ(landmarksOfTwoParts(0.01, 1.75, 1), (std::vector<LandmarkId>{1, 101}));
+}
+
+TEST(HypothesisTreeTest, WithoutSplitsEveryNeighbourIsALandmarkOfItsOwn) {
+  EXPECT_EQ(landmarksOfTwoParts(0.0, 1.0, 0), (std::vector<LandmarkId>{1, 101}));
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

@@ -16,6 +16,8 @@ struct Candidate {
   double log_likelihood = 0.0;  ///< log N(p; pi, P + Sigma) + log P(c | class probabilities), 1/m^3
   double mahalanobis_sq = 0.0;
   bool is_outlier = false;  ///< better explained by a centroid that is far off
+  double log_part_likelihood =
+      0.0;  ///< the same as `log_likelihood` for a part of the object, whose centroid is far off
 };
 
 /// What the association of one frame with one hypothesis has to choose from.
@@ -63,8 +65,11 @@ class AssociationModel {
   /// How classes are confused, as it is known now.
   ClassConfusion& confusion() { return confusion_; }
 
-  double logMapVolume() const { return log_map_volume_; }
-  double gateMahalanobisSq() const { return gate_mahalanobis_sq_; }
+  /// log density of a detection that may be of any class and anywhere in the map's volume, 1/m^3.
+  double logUniformDensity() const { return log_uniform_density_; }
+
+  /// log density of the false positives of a frame.
+  double logClutterDensity() const { return log_uniform_density_ + log_false_positives_; }
 
  private:
   void collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
@@ -82,7 +87,8 @@ class AssociationModel {
   ClassConfusion confusion_;
   std::vector<double> log_class_prior_;
   std::vector<double> transition_variance_m2_;
-  double log_map_volume_;
+  double log_uniform_density_;
+  double log_false_positives_;
   double gate_mahalanobis_sq_;
 };
 

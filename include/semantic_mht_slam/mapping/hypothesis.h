@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -63,6 +64,20 @@ struct TrackedLandmark {
 };
 
 using TrackedLandmarkPtr = std::shared_ptr<const TrackedLandmark>;
+
+/// Where the landmark with an id stands in a list by rising id, or would stand; null if the list does not have it.
+struct LandmarkPlace {
+  std::vector<TrackedLandmarkPtr>::const_iterator place;
+  const TrackedLandmark* landmark = nullptr;
+};
+
+inline LandmarkPlace findLandmark(const std::vector<TrackedLandmarkPtr>& landmarks, LandmarkId id) {
+  const auto place =
+      std::lower_bound(landmarks.begin(), landmarks.end(), id,
+                       [](const TrackedLandmarkPtr& known, LandmarkId wanted) { return known->id < wanted; });
+  const bool is_known = place != landmarks.end() && (*place)->id == id;
+  return {place, is_known ? place->get() : nullptr};
+}
 
 /// Which landmark each measurement of a frame went to, with the frames before: a list that branches share.
 struct AssociationRecord {

@@ -40,7 +40,6 @@ class LandmarkTracking {
 
   MapperConfig config_;
   DetectionRate rate_;
-  double log_class_count_;
 };
 
 }  // namespace semantic_mht_slam

@@ -38,11 +38,11 @@ struct AssociationConfig {
   bool learn_confusion = true;
   double new_density = 1.0;
   double false_positive_density = 1.0;
-  double outlier_prob = 0.05;
-  double outlier_factor = 2.0;
+  double outlier_prob = 0.1;
+  double outlier_factor = 3.0;
   double outlier_min_stddev_m = 0.3;
   double ukf_gate_m = 2.0;
-  double split_distance_factor = 0.4;
+  double split_prob = 0.015;
 };
 
 /// The hypothesis tree (paper, section II-B).
