@@ -1,17 +1,10 @@
 #include "semantic_mht_slam/app/offline_runner.h"
 
-#include <chrono>
-
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/stopwatch.h"
 
 namespace semantic_mht_slam {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double millisecondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 std::vector<LoopClosureResult> loopClosures(const BackEnd& back_end) {
   const std::vector<MapKeyframe>& keyframes = back_end.keyframes().keyframes;
@@ -44,23 +37,25 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   const bool is_another_drive =
       start != nullptr && last && !recording.odometry.empty() && !goesOn(*last, recording.odometry.front());
   if (is_another_drive) slam.beginSession();
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   auto frame = recording.detector_frames.begin();
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {
-    const auto step_begin = Clock::now();
+    const Stopwatch step_watch;
+    const double mapping_before_s = slam.mappingSeconds();
     const bool is_used = slam.addOdometry(recording.odometry[i]);
     while (frame != recording.detector_frames.end() && frame->stamp <= recording.odometry[i].stamp) {
       slam.addDetections(frame->stamp, frame->detections);
       ++frame;
     }
-    result.step_ms.push_back(millisecondsSince(step_begin));
+    result.step_ms.push_back(step_watch.elapsed_ms());
+    result.mapping_ms.push_back(1e3 * (slam.mappingSeconds() - mapping_before_s));
     if (is_used) result.online_trajectory.push_back(*slam.latestPose());
     result.hypotheses.push_back(static_cast<int>(slam.hypotheses().size()));
     progress(i + 1, recording.odometry.size());
   }
   for (; frame != recording.detector_frames.end(); ++frame) slam.addDetections(frame->stamp, frame->detections);
   slam.finish();
-  result.seconds = millisecondsSince(begin) / 1e3;
+  result.seconds = watch.elapsed_s();
   result.whole_trajectory = slam.trajectory();
   result.trajectory.assign(result.whole_trajectory.begin() + static_cast<std::ptrdiff_t>(known),
                            result.whole_trajectory.end());

@@ -191,6 +191,7 @@ void writeReport(const std::string& folder, const RunResult& result, const std::
                  {"frames", result.trajectory.size()},
                  {"seconds", result.seconds},
                  {"ms_per_frame", summarizeTimes(result.step_ms)},
+                 {"mapping_ms_per_frame", summarizeTimes(result.mapping_ms)},
                  {"peak_rss_mb", peakRssMb()},
                  {"hypotheses", summarizeHypotheses(result.hypotheses)},
                  {"landmarks", result.landmarks.size()},

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
+
+#include "semantic_mht_slam/common/stopwatch.h"
 
 namespace semantic_mht_slam {
 
@@ -10,19 +11,16 @@ class Deadline {
  public:
   explicit Deadline(double budget_s) : budget_s_(budget_s) {}
 
-  bool hasPassed() const { return budget_s_ > 0.0 && elapsed_s() >= budget_s_; }
+  bool hasPassed() const { return budget_s_ > 0.0 && watch_.elapsed_s() >= budget_s_; }
 
   /// What a solver may take of the time that is left, for which 0 means no limit.
   double left_s(double share = 1.0) const {
     constexpr double kLeast_s = 1e-6;
-    return budget_s_ > 0.0 ? std::max(kLeast_s, share * (budget_s_ - elapsed_s())) : 0.0;
+    return budget_s_ > 0.0 ? std::max(kLeast_s, share * (budget_s_ - watch_.elapsed_s())) : 0.0;
   }
 
  private:
-  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
+  Stopwatch watch_;
   double budget_s_;
 };
 

@@ -1,7 +1,6 @@
 #include "evaluate_alignment_trials.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "semantic_mht_slam/common/assignment.h"
+#include "semantic_mht_slam/common/stopwatch.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -100,11 +100,10 @@ double squaredError(const AlignmentHypothesis& hypothesis, const Pose& T_map_bas
 /// Matches of the likeliest hypothesis, and what there is to say of all of them; sums until all frames are done.
 std::vector<int> jointAlignment(const AlignmentScene& scene, const Pose& T_map_base, const ClassTable& classes,
                                 const JointAlignmentConfig& config, AlignmentResult& result) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const std::vector<AlignmentHypothesis> found =
       hypotheses(scene.detections, scene.landmarks, T_map_base, classes, config);
-  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-  result.milliseconds.push_back(elapsed.count());
+  result.milliseconds.push_back(watch.elapsed_ms());
   ++result.frames;
   result.hypotheses += static_cast<double>(found.size());
   result.any_right += std::any_of(found.begin(), found.end(), [&](const AlignmentHypothesis& hypothesis) {

@@ -30,6 +30,8 @@ ReportTable measuredTable(const BenchmarkResult& result, const std::string& sequ
                                        {"ms a frame", "ms_mean", 3},
                                        {"99 % of the frames, ms", "ms_p99", 2},
                                        {"slowest frame, ms", "ms_max", 1},
+                                       {"mapping, ms a frame", "mapping_ms_mean", 3},
+                                       {"99 % of the frames, ms", "mapping_ms_p99", 2},
                                        {"peak memory, MB", "peak_rss_mb", 0}};
   ReportTable table{
       "Sequence " + sequence + ", all odometries and objects: median / largest of the runs", {"method"}, {}};

@@ -45,7 +45,7 @@ class BenchmarkScorer {
 };
 
 /// Times and memory of a run, which are measured anew each time: seconds, ms_mean, ms_p50, ms_p95, ms_p99, ms_max,
-/// peak_rss_mb.
+/// mapping_ms_mean, mapping_ms_p99 (the mapper alone), peak_rss_mb.
 Figures measuredOf(const BenchmarkCell& cell);
 
 /// How many frames had how many hypotheses; empty if the report does not tell.

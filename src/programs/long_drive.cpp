@@ -19,6 +19,7 @@
 #include "semantic_mht_slam/app/simulated_dataset.h"
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/stopwatch.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/simulation/simulator.h"
@@ -57,8 +58,6 @@ po::options_description makeOptions(Arguments& arguments) {
   return options;
 }
 
-using Clock = std::chrono::steady_clock;
-
 /// The running node: what it is sent and what it answers. Needs a running spinner.
 class FedNode {
  public:
@@ -88,14 +87,14 @@ class FedNode {
   Answer feed(Stamp stamp, const Pose& T_odom_base, const SemanticObjectArray& objects) {
     constexpr std::chrono::seconds kLimit(60);
     const nav_msgs::Odometry odometry = toOdometry({stamp, T_odom_base}, frames_.odom_frame, frames_.base_frame);
-    const Clock::time_point begin = Clock::now();
+    const Stopwatch watch;
     objects_.publish(objects);
     odometry_.publish(odometry);
     std::unique_lock<std::mutex> lock(mutex_);
     if (!changed_.wait_for(lock, kLimit, [&] { return last_pose_ >= stamp && last_objects_ >= stamp; })) {
       throw InputError("the node has not answered for 60 s");
     }
-    return {std::chrono::duration<double, std::milli>(Clock::now() - begin).count(), T_map_base_};
+    return {watch.elapsed_ms(), T_map_base_};
   }
 
   /// What the node says of its estimator after now.

@@ -1,7 +1,6 @@
 /// \file
 /// Optimises a pose-graph file: optimize_g2o FILE.g2o --output OUT.g2o [--robust cauchy] [--report FILE.json].
 
-#include <chrono>
 #include <ctime>
 #include <exception>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include <boost/program_options.hpp>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/stopwatch.h"
 #include "semantic_mht_slam/graph/batch_solver.h"
 #include "semantic_mht_slam/io/g2o_file.h"
 #include "semantic_mht_slam/io/g2o_report.h"
@@ -84,12 +84,12 @@ double cpuSeconds() {
 
 template <int kDim>
 G2oReport optimize(BatchGraph<kDim>& graph, const BatchOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const double cpu_start_s = cpuSeconds();
   G2oReport report;
   report.solver = optimizeBatch(graph, options);
   report.cpu_seconds = cpuSeconds() - cpu_start_s;
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = watch.elapsed_s();
   return report;
 }
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "semantic_mht_slam/common/stopwatch.h"
+
 namespace semantic_mht_slam {
 
 namespace {
@@ -87,7 +89,9 @@ void Slam::processReadyFrames() {
 }
 
 void Slam::map(const Frame& frame) {
+  const Stopwatch watch;
   auto submap = mapper_->add(frame.index, frame.stamp, frame.T_odom_base, frame.detections, rng_);
+  mapping_s_ += watch.elapsed_s();
   if (submap) take(std::move(*submap));
   if (submap_frames_.empty()) submap_driven_m_ = driven_m_;
   submap_frames_.push_back(frame);

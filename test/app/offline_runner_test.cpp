@@ -33,7 +33,14 @@ TEST(OfflineRunnerTest, EveryFrameAndDetectionGoesThroughOnce) {
       });
   EXPECT_EQ(calls, 41U);
   EXPECT_EQ(result.trajectory.size(), 41U);
-  EXPECT_EQ(result.step_ms.size(), 41U);
+  ASSERT_EQ(result.step_ms.size(), 41U);
+  ASSERT_EQ(result.mapping_ms.size(), 41U);
+  double mapping_ms = 0.0;
+  for (std::size_t i = 0; i < 41; ++i) {
+    EXPECT_LE(result.mapping_ms[i], result.step_ms[i]) << "step " << i;
+    mapping_ms += result.mapping_ms[i];
+  }
+  EXPECT_GT(mapping_ms, 0.0);
   EXPECT_EQ(result.counters.frames, 41U);
   EXPECT_EQ(result.counters.detections, detections);
 }

@@ -34,8 +34,9 @@ struct RunResult {
   SlamState state;                            ///< to go on from
   std::vector<StampedPose> whole_trajectory;  ///< with that of the map that the run began with
   std::vector<int> hypotheses;                ///< living ones after each odometry sample
-  std::vector<double> step_ms;  ///< wall time of each step: an odometry sample and the detections up to its stamp
-  double seconds = 0.0;         ///< wall time of the run, without reading and writing files
+  std::vector<double> step_ms;     ///< wall time of each step: an odometry sample and the detections up to its stamp
+  std::vector<double> mapping_ms;  ///< what the mapper took of each: association, hypotheses, fusion; not the back end
+  double seconds = 0.0;            ///< wall time of the run, without reading and writing files
 };
 
 /// Called now and then with the number of odometry samples done and of all.

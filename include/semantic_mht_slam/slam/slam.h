@@ -131,6 +131,9 @@ class Slam {
   /// Index of the current submap; -1 before the first.
   int submapIndex() const { return mapper_ ? mapper_->submapIndex() : -1; }
 
+  /// Wall time that the mapper took so far (association, hypotheses, fusion; not the back end), s.
+  double mappingSeconds() const { return mapping_s_; }
+
   const InputCounters& counters() const { return assembler_.counters(); }
 
  private:
@@ -193,6 +196,7 @@ class Slam {
   bool is_place_known_ = false;  ///< that of the newest finished submap
   bool is_following_ = false;
   std::optional<Frame> latest_frame_;
+  double mapping_s_ = 0.0;
 };
 
 }  // namespace semantic_mht_slam
