@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
+
 #include "semantic_mht_slam/common/log_math.h"
 
 namespace semantic_mht_slam {
@@ -110,14 +112,31 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
   return true;
 }
 
+void AssociationModel::collectReachable(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                                        std::vector<AssociationProblem::Reachable>& reachable) const {
+  Eigen::AlignedBox2d reach;
+  for (const Measurement& measurement : measurements) reach.extend(measurement.position_m.head<2>());
+  const Eigen::Vector2d gate_m = Eigen::Vector2d::Constant(config_.association.max_gate_m);
+  if (!measurements.empty()) reach = Eigen::AlignedBox2d(reach.min() - gate_m, reach.max() + gate_m);
+  reachable.clear();
+  for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
+    const Eigen::Vector3d& position_m = hypothesis.landmarks[j]->position.mean_m;
+    if (!reach.contains(position_m.head<2>())) continue;
+    reachable.push_back({position_m.x(), position_m.y(), static_cast<int>(j)});
+  }
+}
+
 void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
+                                         const std::vector<AssociationProblem::Reachable>& reachable,
                                          std::vector<Candidate>& candidates) const {
   candidates.clear();
   const double max_gate_m = config_.association.max_gate_m;
-  for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
-    const TrackedLandmark& landmark = *hypothesis.landmarks[j];
+  for (const auto& [x_m, y_m, j] : reachable) {
+    if (std::abs(detected.position_m.x() - x_m) > max_gate_m || std::abs(detected.position_m.y() - y_m) > max_gate_m) {
+      continue;
+    }
+    const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(j)];
     const Eigen::Vector3d d = detected.position_m - landmark.position.mean_m;
-    if (std::abs(d.x()) > max_gate_m || std::abs(d.y()) > max_gate_m) continue;
     const double log_class = logClassLikelihood(detected.class_index, landmark.class_probs);
     if (!std::isfinite(log_class)) continue;
     const ClassIndex object_class = landmark.mostLikelyClass();
@@ -131,7 +150,7 @@ void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const 
     double log_density = 0.0;
     if (!evaluateMixture(cov, measurement.outlier_variance_m2, d, candidate, log_density)) continue;
     if (candidate.mahalanobis_sq > gate_mahalanobis_sq_) continue;
-    candidate.landmark = static_cast<int>(j);
+    candidate.landmark = j;
     candidate.log_likelihood = log_density + log_class;
     candidate.log_part_likelihood += log_class;
     candidates.push_back(candidate);
@@ -143,8 +162,9 @@ void AssociationModel::formulate(const MapHypothesis& hypothesis, const std::vec
   problem.landmarks = static_cast<int>(hypothesis.landmarks.size());
   problem.measurements = static_cast<int>(measurements.size());
   problem.gated.resize(measurements.size());
+  collectReachable(hypothesis, measurements, problem.reachable);
   for (std::size_t i = 0; i < measurements.size(); ++i) {
-    collectCandidates(hypothesis, measurements[i], driven_m, problem.gated[i]);
+    collectCandidates(hypothesis, measurements[i], driven_m, problem.reachable, problem.gated[i]);
   }
   problem.costs.clear(problem.landmarks + 2 * problem.measurements);
   switch (config_.estimator) {

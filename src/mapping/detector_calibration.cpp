@@ -47,18 +47,23 @@ void describe(CalibrationConfig& config, Fields& fields) {
 }
 
 void RunningMedian::add(double value, int count) {
-  bins_[static_cast<std::size_t>(std::clamp(binOf(std::max(value, kSmallest)), 0, kBins - 1))] += count;
+  const int bin = std::clamp(binOf(std::max(value, kSmallest)), 0, kBins - 1);
+  bins_[static_cast<std::size_t>(bin)] += count;
   count_ += count;
+  if (bin < median_bin_) below_ += count;
+  moveToMedian();
+}
+
+/// To the first bin that, with those below, holds half of the values.
+void RunningMedian::moveToMedian() {
+  while (median_bin_ > 0 && 2 * below_ >= count_) below_ -= bins_[static_cast<std::size_t>(--median_bin_)];
+  while (median_bin_ + 1 < kBins && 2 * (below_ + bins_[static_cast<std::size_t>(median_bin_)]) < count_) {
+    below_ += bins_[static_cast<std::size_t>(median_bin_++)];
+  }
 }
 
 double RunningMedian::median() const {
-  int below = 0;
-  int bin = 0;
-  while (bin + 1 < kBins && 2 * (below + bins_[static_cast<std::size_t>(bin)]) < count_) {
-    below += bins_[static_cast<std::size_t>(bin)];
-    ++bin;
-  }
-  return kSmallest * std::pow(kBinRatio, bin + 0.5);
+  return kSmallest * std::pow(kBinRatio, median_bin_ + 0.5);
 }
 
 DetectorCalibration::DetectorCalibration(const CalibrationConfig& config, const ClassTable& classes)

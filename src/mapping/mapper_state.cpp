@@ -20,6 +20,10 @@ void transferFixed(StateArchive& archive, List& list) {
 
 void RunningMedian::transfer(StateArchive& archive) {
   archive(bins_, count_);
+  if (archive.isReading()) {
+    median_bin_ = below_ = 0;
+    moveToMedian();
+  }
 }
 
 void DetectorCalibration::PastFrame::transfer(StateArchive& archive) {

@@ -15,6 +15,7 @@ const std::vector<std::pair<std::string, Method>> kMethods = {
     {"odometry", Method::kOdometry}, {"ukf", Method::kUkf}, {"mhm", Method::kMhm}, {"dpmhm", Method::kDpmhm}};
 
 constexpr double kSensorReach_m = 60.0;
+constexpr double kGraphShift_m = 10.0;  // as far as the graph may move a landmark in its submap
 
 }  // namespace
 
@@ -127,11 +128,15 @@ EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {
   const Pose T_submap_map = prior.T_a_b.inverse();
   const double radius_m = kSensorReach_m + 3.0 * prior.stddev_xy_m;
   const int newest = static_cast<int>(map_.submaps().size()) - earlier_after_submaps_;
-  for (const MixtureLandmark& landmark : landmarks()) {
-    if (landmark.last_submap > newest) continue;
-    if ((landmark.position.mean_m - prior.T_a_b.translation_m).head<2>().norm() > radius_m) continue;
-    earlier.landmarks.push_back(transformed(T_submap_map, landmark));
-  }
+  const auto is_within = [&](const Eigen::Vector3d& position_m, double distance_m) {
+    return (position_m - prior.T_a_b.translation_m).head<2>().norm() <= distance_m;
+  };
+  map_.forEachLandmark([&](int submap, const MixtureLandmark& seen) {
+    if (seen.last_submap > newest) return;
+    if (!is_within(T_map_submap(submap) * seen.position.mean_m, radius_m + kGraphShift_m)) return;
+    const MixtureLandmark landmark = inMap(submap, seen);
+    if (is_within(landmark.position.mean_m, radius_m)) earlier.landmarks.push_back(transformed(T_submap_map, landmark));
+  });
   if (submap_frames_.empty()) prediction_ = next_prediction_;  // no submap before it is still being finished
   return earlier;
 }
@@ -147,19 +152,27 @@ const std::vector<MapHypothesis>& Slam::hypotheses() const {
   return mapper_ ? mapper_->hypotheses() : kNone;
 }
 
+Pose Slam::T_map_submap(int submap) const {
+  return back_end_ ? back_end_->T_map_submap(submap) : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
+}
+
+/// Landmarks of the pose graph stand where the graph has them.
+MixtureLandmark Slam::inMap(int submap, const MixtureLandmark& seen) const {
+  MixtureLandmark landmark = transformed(T_map_submap(submap), seen);
+  const auto position_m = back_end_ ? back_end_->landmark(landmark.id) : std::optional<Eigen::Vector3d>();
+  if (!position_m) return landmark;
+  const Eigen::Vector3d shift_m = *position_m - landmark.position.mean_m;
+  landmark.position.mean_m += shift_m;
+  for (MixtureComponent& component : landmark.components) component.position.mean_m += shift_m;
+  return landmark;
+}
+
 std::vector<MixtureLandmark> Slam::landmarks() const {
-  std::vector<MixtureLandmark> landmarks = map_.landmarks([this](int submap) {
-    return back_end_ ? back_end_->T_map_submap(submap)
-                     : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
-  });
-  if (!back_end_) return landmarks;
-  for (MixtureLandmark& landmark : landmarks) {
-    const std::optional<Eigen::Vector3d> position_m = back_end_->landmark(landmark.id);
-    if (!position_m) continue;
-    const Eigen::Vector3d shift_m = *position_m - landmark.position.mean_m;
-    landmark.position.mean_m += shift_m;
-    for (MixtureComponent& component : landmark.components) component.position.mean_m += shift_m;
-  }
+  std::vector<MixtureLandmark> landmarks;
+  map_.forEachLandmark(
+      [&](int submap, const MixtureLandmark& landmark) { landmarks.push_back(inMap(submap, landmark)); });
+  auto merged_into = map_.mergedInto();
+  for (MixtureLandmark& landmark : landmarks) landmark.merged_ids = std::move(merged_into[landmark.id]);
   return landmarks;
 }
 

@@ -56,21 +56,22 @@ void SubmapArchive::merge(LandmarkId merged, LandmarkId survivor) {
   landmarks_.erase(merged);
 }
 
-std::vector<MixtureLandmark> SubmapArchive::landmarks(const std::function<Pose(int)>& T_map_submap) const {
+void SubmapArchive::forEachLandmark(
+    const std::function<void(int submap, const MixtureLandmark& landmark)>& visit) const {
+  for (const auto& [id, entry] : landmarks_) {
+    if (isKept(entry)) visit(entry.submap, entry.landmark);
+  }
+}
+
+std::map<LandmarkId, std::vector<LandmarkId>> SubmapArchive::mergedInto() const {
   std::map<LandmarkId, std::vector<LandmarkId>> merged_into;
   for (const auto& [merged, survivor] : merged_ids_.survivors()) merged_into[resolve(survivor)].push_back(merged);
-  std::vector<MixtureLandmark> result;
-  for (const auto& [id, entry] : landmarks_) {
-    if (!isKept(id)) continue;
-    result.push_back(transformed(T_map_submap(entry.submap), entry.landmark));
-    result.back().merged_ids = merged_into[id];
-  }
-  return result;
+  return merged_into;
 }
 
 bool SubmapArchive::isKept(LandmarkId id) const {
   const auto found = landmarks_.find(id);
-  return found != landmarks_.end() && found->second.landmark.existence_prob >= keep_prob_;
+  return found != landmarks_.end() && isKept(found->second);
 }
 
 std::vector<DetectionAssociation> SubmapArchive::associations() const {

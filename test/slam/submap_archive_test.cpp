@@ -26,8 +26,13 @@ std::shared_ptr<const Submap> makeSubmap(const Pose& T_odom_submap, std::vector<
 }
 
 std::vector<MixtureLandmark> landmarksOf(const SubmapArchive& archive) {
-  return archive.landmarks(
-      [&](int submap) { return archive.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap; });
+  std::vector<MixtureLandmark> landmarks;
+  auto merged_into = archive.mergedInto();
+  archive.forEachLandmark([&](int submap, const MixtureLandmark& landmark) {
+    landmarks.push_back(transformed(archive.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap, landmark));
+    landmarks.back().merged_ids = merged_into[landmark.id];
+  });
+  return landmarks;
 }
 
 TEST(SubmapArchiveTest, TheLastSubmapThatSawALandmarkPlacesIt) {

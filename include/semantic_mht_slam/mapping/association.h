@@ -29,6 +29,14 @@ struct AssociationProblem {
   int landmarks = 0;
   int measurements = 0;
 
+  /// A landmark near enough to the measurements to be a candidate of any; side by side, as each is looked at for each.
+  struct Reachable {
+    double x_m;
+    double y_m;
+    int landmark;
+  };
+  std::vector<Reachable> reachable;
+
   bool isLandmark(int column) const { return column < landmarks; }
   bool isNew(int column) const { return column >= landmarks && column < landmarks + measurements; }
   bool isFalsePositive(int column) const { return column >= landmarks + measurements; }
@@ -72,7 +80,10 @@ class AssociationModel {
   double logClutterDensity() const { return log_uniform_density_ + log_false_positives_; }
 
  private:
+  void collectReachable(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                        std::vector<AssociationProblem::Reachable>& reachable) const;
   void collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
+                         const std::vector<AssociationProblem::Reachable>& reachable,
                          std::vector<Candidate>& candidates) const;
   bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2, const Eigen::Vector3d& d,
                        Candidate& candidate, double& log_density) const;

@@ -36,8 +36,12 @@ class RunningMedian {
 
  private:
   static constexpr int kBins = 200;
+  void moveToMedian();
+
   std::array<int, kBins> bins_{};
   int count_ = 0;
+  int median_bin_ = 0;
+  int below_ = 0;  ///< values in the bins below that of the median
 };
 
 /// Noise of a detector's centroids, estimated from consecutive frames without knowing which object is which: residuals

@@ -171,6 +171,8 @@ class Slam {
   bool isKnownSince(std::size_t first_keyframe) const;
   void take(Submap submap);
   EarlierMap earlierMap(const Pose& T_odom_submap);
+  Pose T_map_submap(int submap) const;
+  MixtureLandmark inMap(int submap, const MixtureLandmark& seen) const;
   std::vector<CorrectionAnchor> correctionAnchors(std::size_t session) const;
 
   Method method_;

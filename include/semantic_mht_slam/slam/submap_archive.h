@@ -25,9 +25,12 @@ class SubmapArchive {
 
   const std::vector<std::shared_ptr<const Submap>>& submaps() const { return submaps_; }
 
-  /// The landmarks of the map by rising id, each as the submap that saw it last has it; `T_map_submap` gives the pose
-  /// of a submap by its index.
-  std::vector<MixtureLandmark> landmarks(const std::function<Pose(int)>& T_map_submap) const;
+  /// Shows the landmarks of the map by rising id, each with the index of the submap that saw it last, as that submap
+  /// has it and in its frame.
+  void forEachLandmark(const std::function<void(int submap, const MixtureLandmark& landmark)>& visit) const;
+
+  /// The ids that were merged into each landmark that took others in.
+  std::map<LandmarkId, std::vector<LandmarkId>> mergedInto() const;
 
   /// A landmark of a submap as the submap has it, by the id that it had then; null if the submap lacks it.
   static const MixtureLandmark* findLandmark(const Submap& submap, LandmarkId id);
@@ -50,6 +53,7 @@ class SubmapArchive {
 
   void transferEntries(StateArchive& archive);
 
+  bool isKept(const Entry& entry) const { return entry.landmark.existence_prob >= keep_prob_; }
   bool isKept(LandmarkId id) const;
 
   double keep_prob_;
