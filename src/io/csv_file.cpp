@@ -18,11 +18,16 @@ std::string_view CsvRow::text(std::size_t column) const {
   return cells_[column];
 }
 
-double CsvRow::number(std::size_t column) const {
+double CsvRow::anyNumber(std::size_t column) const {
   const std::optional<double> value = parseDouble(text(column));
   if (!value) fail(column, "'" + std::string(cells_[column]) + "' is not a number");
-  if (!std::isfinite(*value)) fail(column, "'" + std::string(cells_[column]) + "' is not finite");
   return *value;
+}
+
+double CsvRow::number(std::size_t column) const {
+  const double value = anyNumber(column);
+  if (!std::isfinite(value)) fail(column, "'" + std::string(cells_[column]) + "' is not finite");
+  return value;
 }
 
 std::int64_t CsvRow::integer(std::size_t column) const {
@@ -34,6 +39,11 @@ std::int64_t CsvRow::integer(std::size_t column) const {
 std::optional<double> CsvRow::optionalNumber(std::size_t column) const {
   if (!has(column)) return std::nullopt;
   return number(column);
+}
+
+std::optional<double> CsvRow::optionalAnyNumber(std::size_t column) const {
+  if (!has(column)) return std::nullopt;
+  return anyNumber(column);
 }
 
 CsvReader::CsvReader(std::vector<std::string> required, std::vector<std::string> optional)

@@ -22,7 +22,7 @@ std::optional<std::array<double, N>> readGroup(const CsvRow& row, std::size_t fi
   std::array<double, N> numbers{};
   std::size_t given = 0;
   for (std::size_t i = 0; i < N; ++i) {
-    if (const auto number = row.optionalNumber(first + i)) {
+    if (const auto number = row.optionalAnyNumber(first + i)) {
       numbers[i] = *number;
       ++given;
     }
@@ -43,8 +43,8 @@ int readCount(const CsvRow& row, std::size_t column, int largest) {
 Detection readDetection(const CsvRow& row, ClassIndex class_index) {
   Detection detection;
   detection.class_index = class_index;
-  detection.position_m = {row.number(kX), row.number(kY), row.number(kZ)};
-  const std::optional<double> score = row.optionalNumber(kScore);
+  detection.position_m = {row.anyNumber(kX), row.anyNumber(kY), row.anyNumber(kZ)};
+  const std::optional<double> score = row.optionalAnyNumber(kScore);
   if (score != -1.0) detection.score = score;  // unknown, as in messages
   if (const auto s = readGroup<6>(row, kCov)) {
     const auto& [xx, xy, xz, yy, yz, zz] = *s;

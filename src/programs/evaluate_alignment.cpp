@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/evaluation/svg_plot.h"
 #include "semantic_mht_slam/io/csv_file.h"
 #include "semantic_mht_slam/io/yaml_file.h"
+#include "semantic_mht_slam/models/usable_detection.h"
 
 #include "evaluate_alignment_trials.h"
 #include "evaluate_commands.h"
@@ -160,6 +161,17 @@ JointAlignmentConfig readConfig(const std::vector<std::string>& texts) {
   return config;
 }
 
+/// Rows of the truth belong to rows of the objects, so none can be left out.
+void requireUsable(const Dataset& dataset, const std::string& objects) {
+  for (std::size_t frame = 0; frame < dataset.frames(); ++frame) {
+    for (const Detection& detection : dataset.detections[frame]) {
+      if (isUsable(detection)) continue;
+      throw InputError(objects + ": frame " + std::to_string(frame) + ", object " + std::to_string(detection.row) +
+                       ": its numbers cannot be used");
+    }
+  }
+}
+
 po::options_description describe(Options& values) {
   po::options_description options("options");
   options.add_options()("dataset", po::value(&values.dataset_path)->required(), "folder with poses.txt")(
@@ -186,6 +198,7 @@ int evaluateAlignment(const std::vector<std::string>& arguments) {
   const ClassTable classes = readClassTable(options.classes_path);
   const Dataset dataset = readDataset({options.dataset_path, options.objects, "poses.txt"}, classes);
   if (!dataset.T_map_base) throw InputError(options.dataset_path + ": no poses.txt, which this needs");
+  requireUsable(dataset, options.objects);
   std::optional<TrueLandmarks> truth;
   if (!options.truth_path.empty()) truth = readTrueLandmarks(options.truth_path, dataset);
   const std::vector<AlignmentScene> scenes =

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "semantic_mht_slam/io/objects_file.h"
+#include "semantic_mht_slam/models/usable_detection.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -31,6 +32,7 @@ std::vector<int> framesThatShow(const std::vector<PointLandmark>& landmarks, con
   for (std::size_t frame = 0; frame < objects.size(); ++frame) {
     std::vector<char> is_shown(landmarks.size(), 0);
     for (const Detection& object : objects[frame]) {
+      if (!isUsable(object)) continue;
       const std::string& name = table[object.class_index].name;
       if (!classes.empty() && std::find(classes.begin(), classes.end(), name) == classes.end()) continue;
       const auto nearest = nearestTo(T_truth_sensor[frame] * object.position_m, landmarks, radius_m);

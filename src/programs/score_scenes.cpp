@@ -16,6 +16,7 @@
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
+#include "semantic_mht_slam/models/usable_detection.h"
 #include "semantic_mht_slam/place/laplacian.h"
 #include "semantic_mht_slam/place/scene_accumulation.h"
 #include "semantic_mht_slam/place/scene_alignment.h"
@@ -109,7 +110,9 @@ std::vector<Pose> readOdometry(const Arguments& arguments, std::size_t frames) {
 class Scenes {
  public:
   Scenes(std::vector<Detections> detections, std::vector<Pose> T_odom_base, int window, const ClassTable& classes)
-      : detections_(std::move(detections)), T_odom_base_(std::move(T_odom_base)), window_(window), classes_(classes) {}
+      : detections_(std::move(detections)), T_odom_base_(std::move(T_odom_base)), window_(window), classes_(classes) {
+    for (Detections& frame : detections_) removeUnusable(frame);
+  }
 
   Scene at(std::size_t frame) const {
     if (window_ == 0) return sceneOfFrame(detections_[frame], classes_);

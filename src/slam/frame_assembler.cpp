@@ -2,16 +2,15 @@
 
 #include <algorithm>
 
-#include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/models/usable_detection.h"
 
 namespace semantic_mht_slam {
 namespace {
 
-bool isUsable(const Detection& detection) {
-  if (!detection.position_m.allFinite()) return false;
-  if (detection.score && !(*detection.score >= 0.0 && *detection.score <= 1.0)) return false;
-  if (detection.size_m && !(detection.size_m->allFinite() && (detection.size_m->array() >= 0.0).all())) return false;
-  return !detection.cov_m2 || isCovariance(*detection.cov_m2);
+constexpr double kFurthest_m = 1e7;  // a quarter of the way round the Earth; beyond it doubles lose what is measured
+
+bool isUsable(const Pose& T_odom_base) {
+  return T_odom_base.isValid() && (T_odom_base.translation_m.cwiseAbs().array() <= kFurthest_m).all();
 }
 
 }  // namespace
@@ -28,7 +27,7 @@ void describe(FrameAssemblerConfig& config, Fields& fields) {
 FrameAssembler::FrameAssembler(const FrameAssemblerConfig& config) : config_(config) {}
 
 bool FrameAssembler::addOdometry(const StampedPose& T_odom_base) {
-  if (!T_odom_base.T_world_base.isValid()) {
+  if (!isUsable(T_odom_base.T_world_base)) {
     ++counters_.odometry_invalid;
     return false;
   }
@@ -66,10 +65,7 @@ void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
     return;
   }
   last_frame_ = stamp;
-  const auto unusable =
-      std::remove_if(detections.begin(), detections.end(), [](const Detection& d) { return !isUsable(d); });
-  counters_.detections_invalid += static_cast<std::size_t>(detections.end() - unusable);
-  detections.erase(unusable, detections.end());
+  counters_.detections_invalid += removeUnusable(detections);
   waiting_.push_back({index, stamp, std::move(detections)});
   if (static_cast<int>(waiting_.size()) > config_.max_waiting_frames) {
     waiting_.pop_front();

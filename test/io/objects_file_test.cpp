@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/models/usable_detection.h"
 
 #include "support/expect_input_error.h"
 #include "support/temporary_folder.h"
@@ -69,7 +70,7 @@ TEST_F(ObjectsFileTest, WrittenObjectsReadBack) {
 
 TEST_F(ObjectsFileTest, BadRowsAreNamedByFileLineAndColumn) {
   const std::string head = "frame,class,x,y,z\n";
-  expectRefused(head + "0,pole,1,nan,3\n", {"objects.csv:2", "column 'y'", "not finite"});
+  expectRefused(head + "0,pole,1,two,3\n", {"objects.csv:2", "column 'y'", "not a number"});
   expectRefused(head + "0,pole,1,2\n", {"objects.csv:2", "4 columns, the header has 5"});
   expectRefused(head + "0,pole,1,2,3,4\n", {"objects.csv:2", "6 columns"});
   expectRefused(head + "0,tree,1,2,3\n", {"objects.csv:2", "unknown class 'tree'", "pole, trunk"});
@@ -82,6 +83,17 @@ TEST_F(ObjectsFileTest, BadRowsAreNamedByFileLineAndColumn) {
   expectRefused("frame,class,x,y,z,x\n", {"objects.csv:1", "'x' stands twice"});
   expectRefused("frame,class,x,y,z,sxx\n0,pole,1,2,3,1\n", {"objects.csv:2", "'sxy'"});
   expectRefused("", {"objects.csv", "empty"});
+}
+
+TEST_F(ObjectsFileTest, NumbersThatAreNotFiniteAreReadAndNotUsable) {
+  const auto frames = read(
+      "frame,class,x,y,z,score,sxx,sxy,sxz,syy,syz,szz\n"
+      "0,pole,1,nan,3,0.5,1,0,0,1,0,1\n0,pole,1,2,-inf,0.5,1,0,0,1,0,1\n0,pole,1,2,3,nan,1,0,0,1,0,1\n"
+      "0,pole,1,2,3,0.5,1,0,0,nan,0,1\n0,pole,1,2,3,0.5,1,0,0,1,0,1\n");
+  ASSERT_EQ(frames[0].size(), 5U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(isUsable(frames[0][i])) << i;
+  EXPECT_TRUE(isUsable(frames[0][4]));
+  EXPECT_EQ(frames[0][4].row, 4);
 }
 
 TEST_F(ObjectsFileTest, PointCountsAndMovingFlagsComeBackAndBadOnesAreNamed) {

@@ -121,7 +121,7 @@ TEST_F(ProgramsTest, BadFilesAreRefused) {
   replaceIn("objects.csv", objects + "0,unicorn,1,2,3\n");
   expectRefused("slam_offline", offlineArguments(), "unicorn");
   expectRefused("kitti_to_bag", offlineArguments(), "unicorn");
-  replaceIn("objects.csv", objects + "0,pole,nan,2,3\n");
+  replaceIn("objects.csv", objects + "0,pole,one,2,3\n");
   expectRefused("slam_offline", offlineArguments(), "column 'x'");
   replaceIn("objects.csv", objects);
 

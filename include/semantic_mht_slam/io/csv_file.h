@@ -17,9 +17,11 @@ class CsvRow {
 
   bool has(std::size_t column) const { return !cells_[column].empty(); }
   std::string_view text(std::size_t column) const;
-  double number(std::size_t column) const;  ///< finite
+  double number(std::size_t column) const;     ///< finite
+  double anyNumber(std::size_t column) const;  ///< may be infinite or not a number at all
   std::int64_t integer(std::size_t column) const;
   std::optional<double> optionalNumber(std::size_t column) const;
+  std::optional<double> optionalAnyNumber(std::size_t column) const;
 
   /// Throws InputError "file:line: column 'name': problem".
   [[noreturn]] void fail(std::size_t column, const std::string& problem) const;

@@ -24,7 +24,7 @@ void describe(FrameAssemblerConfig& config, Fields& fields);
 /// What came in and what was dropped, since the beginning.
 struct InputCounters {
   std::size_t odometry = 0;                 ///< odometry samples used
-  std::size_t odometry_invalid = 0;         ///< dropped: not finite, or the quaternion has no unit norm
+  std::size_t odometry_invalid = 0;         ///< dropped: not finite, beyond 1e7 m, or the quaternion has no unit norm
   std::size_t odometry_not_rising = 0;      ///< dropped: stamp not after the one before
   std::size_t frames = 0;                   ///< detector frames used
   std::size_t frames_before_odometry = 0;   ///< dropped: older than the odometry that is still known
@@ -33,7 +33,7 @@ struct InputCounters {
   std::size_t frames_in_odometry_gap = 0;   ///< dropped: odometry around the stamp is too far apart
   std::size_t frames_waiting_too_long = 0;  ///< dropped: too many frames wait for odometry
   std::size_t detections = 0;               ///< detections in the frames used
-  std::size_t detections_invalid = 0;       ///< dropped: position, covariance or score cannot be used
+  std::size_t detections_invalid = 0;       ///< dropped: position, covariance, score or size cannot be used
 };
 
 /// Joins odometry and detections by their stamps: a frame gets the odometry pose interpolated to its stamp, as soon as
