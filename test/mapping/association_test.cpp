@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/common/random.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -91,6 +93,97 @@ TEST(AssociationTest, AHundredSightingsNeitherOverflowNorCaptureADetectionFourte
     for (const double cost : problem.costs.costs()) EXPECT_TRUE(std::isfinite(cost));
     EXPECT_EQ(bestColumn(problem, 0), 1);
   }
+}
+
+TEST(AssociationTest, ManySightingsDoNotCaptureADetectionThatFitsAnotherLandmark) {
+  MapperConfig config = makePaperConfig();
+  const AssociationModel model(config, makeTable());
+  const double sigma = std::sqrt(0.02);
+  AssociationProblem problem;
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 100000), makeLandmark(2, 3.5 * sigma, 0, 1)};
+  model.formulate(hypothesis, {makeMeasurement(3.5 * sigma, 0)}, 0.0, problem);
+  ASSERT_EQ(problem.gated[0].size(), 2U);
+  EXPECT_EQ(bestColumn(problem, 0), 1);
+  // log 20 against the misfit of 3.5 deviations
+  EXPECT_NEAR(problem.costs.cost(0) - problem.costs.cost(1), 0.5 * 3.5 * 3.5 - std::log(20.0), 1e-9);
+}
+
+TEST(AssociationTest, TheGateLetsItsShareOfTrueAssociationsThrough) {
+  for (const double share : {0.9, 0.99, 0.999}) {
+    MapperConfig config = makePaperConfig();
+    config.association.gate_prob = share;
+    const AssociationModel model(config, makeTable());
+    MapHypothesis hypothesis;
+    hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 1)};
+    Rng rng(1);
+    std::vector<Measurement> measurements;
+    constexpr int kSamples = 20000;
+    for (int i = 0; i < kSamples; ++i) {
+      measurements.push_back(makeMeasurement(0.0, 0));
+      measurements.back().position_m = std::sqrt(0.02) * Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal());
+    }
+    AssociationProblem problem;
+    model.formulate(hypothesis, measurements, 0.0, problem);
+    int inside = 0;
+    for (const auto& candidates : problem.gated) inside += static_cast<int>(candidates.size());
+    const double stddev = std::sqrt(share * (1.0 - share) / kSamples);
+    EXPECT_NEAR(static_cast<double>(inside) / kSamples, share, 4.0 * stddev);
+  }
+}
+
+TEST(AssociationTest, FalsePositivesAreExpectedAtTheRateSoFar) {
+  const MapperConfig config = makePaperConfig();
+  const AssociationModel model(config, makeTable());
+  AssociationProblem problem;
+  const auto falseCost = [&](int false_positives) {
+    MapHypothesis hypothesis;
+    hypothesis.false_positives = false_positives;
+    model.formulate(hypothesis, {makeMeasurement(0.0, 0)}, 0.0, problem);
+    return problem.costs.cost(problem.costs.rowEnd(0) - 1);
+  };
+  const double log_uniform = -std::log(config.association.map_volume_m3) - std::log(3.0);
+  EXPECT_NEAR(falseCost(7), -std::log(7.0 * config.association.false_positive_rate) - log_uniform, 1e-9);
+  EXPECT_NEAR(falseCost(0),
+              -std::log(config.association.concentration * config.association.false_positive_rate) - log_uniform, 1e-9);
+}
+
+TEST(AssociationTest, OutliersAreAMixtureOfTwoGaussians) {
+  MapperConfig config = makePaperConfig();
+  config.association.outlier_prob = 0.2;
+  const AssociationModel model(config, makeTable());
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 1)};
+  for (const double x_m : {0.0, 0.35, 0.5, 1.0}) {
+    Measurement measurement = makeMeasurement(x_m, 0);
+    measurement.outlier_variance_m2.setConstant(0.18);
+    AssociationProblem problem;
+    model.formulate(hypothesis, {measurement}, 0.0, problem);
+    const auto density = [&](double variance_m2) {
+      return std::exp(-0.5 * x_m * x_m / variance_m2) / std::pow(2.0 * M_PI * variance_m2, 1.5);
+    };
+    ASSERT_EQ(problem.gated[0].size(), 1U);
+    const Candidate& candidate = problem.gated[0][0];
+    EXPECT_NEAR(candidate.log_likelihood, std::log(0.8 * density(0.02) + 0.2 * density(0.2)), 1e-9) << x_m;
+    EXPECT_NEAR(candidate.log_part_likelihood, std::log(density(0.2)), 1e-9) << x_m;
+    EXPECT_EQ(candidate.is_outlier, 0.2 * density(0.2) > 0.8 * density(0.02)) << x_m;
+  }
+}
+
+TEST(AssociationTest, LandmarksOfWanderingCentroidsGrowWithTheDistanceSinceTheyWereSeen) {
+  const AssociationModel model(makePaperConfig(), makeTable());
+  auto landmark = std::make_shared<TrackedLandmark>(*makeLandmark(1, 0.0, 0, 5));
+  landmark->updated_at_m = 2.0;
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {landmark};
+  Measurement measurement = makeMeasurement(1.0, 0);
+  measurement.wander_variance_per_m = 0.05;
+  AssociationProblem problem;
+  model.formulate(hypothesis, {measurement}, 2.0, problem);
+  EXPECT_TRUE(problem.gated[0].empty());
+  model.formulate(hypothesis, {measurement}, 6.0, problem);
+  ASSERT_EQ(problem.gated[0].size(), 1U);
+  EXPECT_NEAR(problem.gated[0][0].mahalanobis_sq, 1.0 / (0.02 + 4.0 * 0.05), 1e-9);
 }
 
 TEST(AssociationTest, UnderTheDeltaModelAnotherClassIsNeverTheSameLandmark) {

@@ -85,30 +85,128 @@ TEST(HypothesisTreeTest, OrderOfLandmarksDoesNotChangeTheResult) {
   EXPECT_GT(most_hypotheses, 1U);  // else nothing was ambiguous
 }
 
+TrackedLandmarkPtr makePole(double x_m, int observations) {
+  auto pole = std::make_shared<TrackedLandmark>();
+  pole->id = 1;
+  pole->position = {Eigen::Vector3d(x_m, 0.0, 0.0), 0.01 * Eigen::Matrix3d::Identity()};
+  pole->class_probs = ClassProbs::Zero(2);
+  pole->class_probs << 0.99, 0.01;
+  pole->observations = observations;
+  pole->log_existence_odds = 5.0;
+  return pole;
+}
+
+Measurement makeMeasurement(const Eigen::Vector3d& position_m, LandmarkId id_if_new) {
+  Measurement measurement;
+  measurement.position_m = position_m;
+  measurement.cov_m2 = 0.04 * Eigen::Matrix3d::Identity();
+  measurement.outlier_variance_m2.setConstant(0.36);
+  measurement.id_if_new = id_if_new;
+  return measurement;
+}
+
+TreeInput makeInputOf(std::vector<Measurement> measurements, std::size_t frame = 0) {
+  TreeInput input;
+  input.frame = frame;
+  input.measurements = std::move(measurements);
+  return input;
+}
+
+/// Every alternative is followed and none is dropped.
+MapperConfig makeFullTree() {
+  MapperConfig config;
+  config.tree.branch_log_ratio = 100.0;
+  config.tree.max_branches = 100;
+  config.tree.max_hypotheses = 1000;
+  config.tree.min_weight = 0.0;
+  config.tree.ess_ratio = 0.0;
+  return config;
+}
+
+/// Log weights by where the only detection of the first frame went; the false positive is 0.
+std::map<LandmarkId, double> weightsOfOneDetection(const MapperConfig& config) {
+  MultiHypothesisTree tree(config, makeTable());
+  tree.restart({makePole(10.0, 20)});
+  Rng rng(1);
+  tree.step(makeInputOf({makeMeasurement({10.3, 0.2, 0.1}, 100)}), rng);
+  std::map<LandmarkId, double> weights;
+  for (const MapHypothesis& leaf : tree.leaves()) {
+    const LandmarkId id = leaf.history->landmark_of_measurement.front();
+    weights[id == kNoLandmark ? 0 : id] = leaf.log_weight;
+  }
+  return weights;
+}
+
+TEST(HypothesisTreeTest, WeightsAreLikelihoodTimesAssignmentPriorWithoutTheCountPrior) {
+  for (const CountPrior prior : {CountPrior::kNone, CountPrior::kLinear, CountPrior::kExponential}) {
+    MapperConfig config = makeFullTree();
+    config.association.count_prior = prior;
+    config.association.outlier_prob = 0.0;
+    config.association.split_prob = 0.0;
+    config.association.new_density = 3.0;
+    config.association.false_positive_density = 0.5;
+    config.detection.missed_detections = false;
+    const auto weights = weightsOfOneDetection(config);
+    ASSERT_EQ(weights.size(), 3U);
+    const double variance_m2 = 0.05;
+    const double log_density = -0.5 * (0.14 / variance_m2) - 1.5 * std::log(2.0 * M_PI * variance_m2);
+    const double log_class = std::log(0.99 * 0.9 + 0.01 * 0.1);
+    const double log_uniform = -std::log(config.association.map_volume_m3) - std::log(2.0);
+    // Poisson(1; 3) Poisson(0; 0.5) and Poisson(0; 3) Poisson(1; 0.5) over Poisson(0; 3) Poisson(0; 0.5)
+    EXPECT_NEAR(weights.at(100) - weights.at(1), log_uniform + std::log(3.0) - log_density - log_class, 1e-9);
+    EXPECT_NEAR(weights.at(0) - weights.at(1), log_uniform + std::log(0.5) - log_density - log_class, 1e-9);
+  }
+}
+
+TEST(HypothesisTreeTest, WeightsOfSeenAndMissedLandmarksDifferByTheirDetectionProbability) {
+  MapperConfig config = makeFullTree();
+  config.association.split_prob = 0.0;
+  config.detection.missed_detections = false;
+  const auto without = weightsOfOneDetection(config);
+  config.detection.missed_detections = true;
+  const auto with = weightsOfOneDetection(config);
+  const double detection_prob = DetectionRate(config.detection, 2).prob(0, {10.0, 0.0, 0.0});
+  const double existence = 1.0 / (1.0 + std::exp(-5.0));
+  const double visible = 1.0 - config.detection.visibility_switch_prob;  // it was, for sure
+  const double missed = std::log(1.0 - existence * visible * detection_prob);
+  const double change = (with.at(100) - with.at(1)) - (without.at(100) - without.at(1));
+  EXPECT_NEAR(change, missed - std::log(detection_prob), 1e-3);
+}
+
+TEST(HypothesisTreeTest, HypothesesThatForgotWhatSetThemApartAreMerged) {
+  MapperConfig config = makeFullTree();
+  MultiHypothesisTree tree(config, makeTable());
+  Rng rng(1);
+  tree.step(makeInputOf({makeMeasurement({10.0, 0.0, 0.0}, 100)}), rng);
+  EXPECT_EQ(tree.leaves().size(), 2U);  // new, and a false positive
+  for (std::size_t frame = 1; frame < 60; ++frame) tree.step(makeInputOf({}, frame), rng);
+  ASSERT_EQ(tree.leaves().size(), 1U);
+  EXPECT_NEAR(tree.leaves().front().log_weight, 0.0, 1e-12);
+}
+
+TEST(HypothesisTreeTest, AlternativesAreFollowedWithinTheRatioAndUpToTheLimit) {
+  const auto leavesWith = [](double branch_log_ratio, int max_branches, int max_hypotheses) {
+    MapperConfig config = makeFullTree();
+    config.tree.branch_log_ratio = branch_log_ratio;
+    config.tree.max_branches = max_branches;
+    config.tree.max_hypotheses = max_hypotheses;
+    return weightsOfOneDetection(config).size();
+  };
+  EXPECT_EQ(leavesWith(100.0, 100, 100), 3U);
+  EXPECT_EQ(leavesWith(100.0, 2, 100), 2U);
+  EXPECT_EQ(leavesWith(0.5, 100, 100), 1U);
+  EXPECT_EQ(leavesWith(100.0, 100, 1), 1U);
+}
+
 /// Where the two detections of a frame go that stand `distance_m` from each other, the first one on a well-known pole.
 std::vector<LandmarkId> landmarksOfTwoParts(double split_prob, double distance_m, ClassIndex second_class) {
   MapperConfig config;
   config.association.split_prob = split_prob;
   MultiHypothesisTree tree(config, makeTable());
-  auto pole = std::make_shared<TrackedLandmark>();
-  pole->id = 1;
-  pole->position = {Eigen::Vector3d(10.0, 0.0, 0.0), 0.01 * Eigen::Matrix3d::Identity()};
-  pole->class_probs = ClassProbs::Zero(2);
-  pole->class_probs << 0.99, 0.01;
-  pole->observations = 20;
-  pole->log_existence_odds = 5.0;
-  tree.restart({pole});
+  tree.restart({makePole(10.0, 20)});
   TreeInput input;
-  for (const double y_m : {0.0, distance_m}) {
-    Measurement measurement;
-    measurement.position_m = {10.0, y_m, 0.0};
-    measurement.cov_m2 = 0.04 * Eigen::Matrix3d::Identity();
-    measurement.outlier_variance_m2.setConstant(0.36);
-    measurement.row = static_cast<int>(input.measurements.size());
-    measurement.id_if_new = 100 + static_cast<LandmarkId>(measurement.row);
-    measurement.class_index = measurement.row == 0 ? 0 : second_class;
-    input.measurements.push_back(measurement);
-  }
+  input.measurements = {makeMeasurement({10.0, 0.0, 0.0}, 100), makeMeasurement({10.0, distance_m, 0.0}, 101)};
+  input.measurements[1].class_index = second_class;
   Rng rng(1);
   tree.step(input, rng);
   return fuseAssociations(tree.leaves()).front().landmark_of_measurement;
@@ -129,6 +227,19 @@ TEST(HypothesisTreeTest, NeighbourOfAnotherClassIsALandmarkOfItsOwn) {
 
 TEST(HypothesisTreeTest, WithoutSplitsEveryNeighbourIsALandmarkOfItsOwn) {
   EXPECT_EQ(landmarksOfTwoParts(0.0, 1.0, 0), (std::vector<LandmarkId>{1, 101}));
+}
+
+TEST(HypothesisTreeTest, WhatNoOtherDetectionShowsHasNoSecondPart) {
+  MapperConfig config;
+  config.tree.max_hypotheses = 1;
+  MultiHypothesisTree tree(config, makeTable());
+  tree.restart({makePole(10.0, 1)});
+  Rng rng(1);
+  tree.step(makeInputOf({makeMeasurement({10.0, 1.7, 0.0}, 100)}), rng);
+  EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement, (std::vector<LandmarkId>{100}));
+  tree.restart({makePole(10.0, 1)});
+  tree.step(makeInputOf({makeMeasurement({10.0, 0.0, 0.0}, 100), makeMeasurement({10.0, 1.7, 0.0}, 101)}), rng);
+  EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement, (std::vector<LandmarkId>{1, 1}));
 }
 
 }  // namespace

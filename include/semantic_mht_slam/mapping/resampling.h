@@ -19,8 +19,9 @@ double normalQuantile(double prob);
 /// 1 / sum of squared weights; the weights sum to 1.
 double effectiveSampleSize(const std::vector<double>& weights);
 
-/// Systematic resampling with a sample size bound by `kldBound` of the distinct elements drawn, and by `max_samples`.
-/// Returns how often each element was drawn; one uniform number is taken from `rng`.
+/// Systematic resampling with a sample size bound by `kldBound` of the distinct elements in such a sample, and by
+/// `max_samples`. Returns how often each element was drawn, in the mean in proportion to its weight; one uniform number
+/// is taken from `rng`.
 std::vector<int> kldResample(const std::vector<double>& weights, double epsilon, double delta, std::size_t max_samples,
                              Rng& rng);
 
