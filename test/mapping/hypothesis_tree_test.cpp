@@ -8,16 +8,10 @@
 
 #include "semantic_mht_slam/mapping/fusion.h"
 
+#include "mapping/hypothesis_tree_test_util.h"
+
 namespace semantic_mht_slam {
 namespace {
-
-ClassTable makeTable() {
-  std::vector<ClassInfo> classes(2);
-  classes[0].name = "pole";
-  classes[1].name = "trunk";
-  classes[1].id = 1;
-  return ClassTable(classes, "test");
-}
 
 /// Landmarks so near each other that detections are ambiguous.
 std::vector<TrackedLandmarkPtr> makeLandmarks(Rng& rng, int count) {
@@ -83,33 +77,6 @@ TEST(HypothesisTreeTest, OrderOfLandmarksDoesNotChangeTheResult) {
     }
   }
   EXPECT_GT(most_hypotheses, 1U);  // else nothing was ambiguous
-}
-
-TrackedLandmarkPtr makePole(double x_m, int observations) {
-  auto pole = std::make_shared<TrackedLandmark>();
-  pole->id = 1;
-  pole->position = {Eigen::Vector3d(x_m, 0.0, 0.0), 0.01 * Eigen::Matrix3d::Identity()};
-  pole->class_probs = ClassProbs::Zero(2);
-  pole->class_probs << 0.99, 0.01;
-  pole->observations = observations;
-  pole->log_existence_odds = 5.0;
-  return pole;
-}
-
-Measurement makeMeasurement(const Eigen::Vector3d& position_m, LandmarkId id_if_new) {
-  Measurement measurement;
-  measurement.position_m = position_m;
-  measurement.cov_m2 = 0.04 * Eigen::Matrix3d::Identity();
-  measurement.outlier_variance_m2.setConstant(0.36);
-  measurement.id_if_new = id_if_new;
-  return measurement;
-}
-
-TreeInput makeInputOf(std::vector<Measurement> measurements, std::size_t frame = 0) {
-  TreeInput input;
-  input.frame = frame;
-  input.measurements = std::move(measurements);
-  return input;
 }
 
 /// Every alternative is followed and none is dropped.
@@ -198,48 +165,40 @@ TEST(HypothesisTreeTest, AlternativesAreFollowedWithinTheRatioAndUpToTheLimit) {
   EXPECT_EQ(leavesWith(100.0, 100, 1), 1U);
 }
 
-/// Where the two detections of a frame go that stand `distance_m` from each other, the first one on a well-known pole.
-std::vector<LandmarkId> landmarksOfTwoParts(double split_prob, double distance_m, ClassIndex second_class) {
+TEST(HypothesisTreeTest, CovariancesTurnWithTheBase) {
   MapperConfig config;
-  config.association.split_prob = split_prob;
+  config.association.concentration = 1e6;  // what is seen is new
+  config.tree.max_hypotheses = 1;
   MultiHypothesisTree tree(config, makeTable());
-  tree.restart({makePole(10.0, 20)});
-  TreeInput input;
-  input.measurements = {makeMeasurement({10.0, 0.0, 0.0}, 100), makeMeasurement({10.0, distance_m, 0.0}, 101)};
-  input.measurements[1].class_index = second_class;
+  TreeInput input = makeInputOf({makeMeasurement({10.0, 0.0, 0.0}, 100)});
+  input.T_submap_base = Pose{expRotation({0.0, 0.0, M_PI / 2.0}), {1.0, 2.0, 0.0}};
+  input.measurements[0].cov_m2.diagonal() << 4.0, 0.01, 0.25;
   Rng rng(1);
   tree.step(input, rng);
-  return fuseAssociations(tree.leaves()).front().landmark_of_measurement;
+  ASSERT_EQ(tree.leaves().front().landmarks.size(), 1U);
+  const Gaussian3& position = tree.leaves().front().landmarks.front()->position;
+  EXPECT_LT((position.mean_m - Eigen::Vector3d(1.0, 12.0, 0.0)).norm(), 1e-9);
+  EXPECT_LT((position.cov_m2.diagonal() - Eigen::Vector3d(0.01, 4.0, 0.25)).norm(), 1e-9);
 }
 
-TEST(HypothesisTreeTest, SecondPartOfAnObjectGoesToItsLandmark) {
-  EXPECT_EQ(landmarksOfTwoParts(0.01, 1.0, 0), (std::vector<LandmarkId>{1, 1}));
-}
-
-TEST(HypothesisTreeTest, NeighbourTooFarToBeASecondPartIsALandmarkOfItsOwn) {
-  EXPECT_EQ(landmarksOfTwoParts(0.01, 4.0, 0), (std::vector<LandmarkId>{1, 101}));
-}
-
-TEST(HypothesisTreeTest, NeighbourOfAnotherClassIsALandmarkOfItsOwn) {
-  EXPECT_EQ(landmarksOfTwoParts(0.01, 1.75, 0), (std::vector<LandmarkId>{1, 1}));
-  EXPECT_EQ(landmarksOfTwoParts(0.01, 1.75, 1), (std::vector<LandmarkId>{1, 101}));
-}
-
-TEST(HypothesisTreeTest, WithoutSplitsEveryNeighbourIsALandmarkOfItsOwn) {
-  EXPECT_EQ(landmarksOfTwoParts(0.0, 1.0, 0), (std::vector<LandmarkId>{1, 101}));
-}
-
-TEST(HypothesisTreeTest, WhatNoOtherDetectionShowsHasNoSecondPart) {
+/// How far one detection `error_m` beside a pole with so many observations moves the pose sideways.
+double correctionBy(double error_m, int observations) {
   MapperConfig config;
   config.tree.max_hypotheses = 1;
   MultiHypothesisTree tree(config, makeTable());
-  tree.restart({makePole(10.0, 1)});
+  tree.restart({makePole(10.0, observations)});
+  TreeInput input = makeInputOf({makeMeasurement({10.0, error_m, 0.0}, 100)});
+  input.step_m = 10.0;
   Rng rng(1);
-  tree.step(makeInputOf({makeMeasurement({10.0, 1.7, 0.0}, 100)}), rng);
-  EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement, (std::vector<LandmarkId>{100}));
-  tree.restart({makePole(10.0, 1)});
-  tree.step(makeInputOf({makeMeasurement({10.0, 0.0, 0.0}, 100), makeMeasurement({10.0, 1.7, 0.0}, 101)}), rng);
-  EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement, (std::vector<LandmarkId>{1, 1}));
+  tree.step(input, rng);
+  EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement.front(), 1U);
+  return tree.leaves().front().offset.mean.head<3>().norm();
+}
+
+TEST(HypothesisTreeTest, OnlySettledLandmarksWithoutOutliersCorrectThePose) {
+  EXPECT_GT(correctionBy(0.2, 20), 0.01);
+  EXPECT_EQ(correctionBy(0.2, 2), 0.0);
+  EXPECT_EQ(correctionBy(1.3, 20), 0.0);
 }
 
 }  // namespace
