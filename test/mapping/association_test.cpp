@@ -239,5 +239,39 @@ TEST(AssociationTest, GaussianTransitionsWidenLandmarksOfEarlierSubmapsOnly) {
   EXPECT_EQ(problem.gated[0].size(), 1U);
 }
 
+TEST(AssociationTest, WithoutSemanticsTheNumberOfClassesDoesNotTipTheBalance) {
+  MapperConfig config = makePaperConfig();
+  config.semantics = false;
+  std::vector<double> differences;
+  for (const std::size_t count : {1U, 3U}) {
+    std::vector<ClassInfo> classes = makeTable().all();
+    classes.resize(count);
+    MapHypothesis hypothesis;
+    hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 1)};
+    AssociationProblem problem;
+    AssociationModel(config, ClassTable(classes, "test"))
+        .formulate(hypothesis, {makeMeasurement(0.1, 0)}, 0.0, problem);
+    differences.push_back(problem.costs.cost(1) - problem.costs.cost(0));
+  }
+  EXPECT_NEAR(differences[0], differences[1], 1e-12);
+}
+
+TEST(AssociationTest, TheUkfBaselineTakesDistancesToLandmarksOfItsClassWithinItsGate) {
+  MapperConfig config = defaultsOf(Estimator::kUkf);
+  MapHypothesis hypothesis;
+  hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 1), makeLandmark(2, 0.3, 1, 1), makeLandmark(3, 1.5, 0, 1),
+                          makeLandmark(4, 2.5, 0, 1)};
+  AssociationProblem problem;
+  const std::vector<Measurement> measurements = {makeMeasurement(0.4, 0)};
+  AssociationModel(config, makeTable()).formulate(hypothesis, measurements, 0.0, problem);
+  EXPECT_EQ(problem.costs.columnIndices(), (std::vector<int>{0, 2, 4}));
+  EXPECT_NEAR(problem.costs.cost(0), 0.4, 1e-12);
+  EXPECT_NEAR(problem.costs.cost(1), 1.1, 1e-12);
+  EXPECT_NEAR(problem.costs.cost(2), config.association.ukf_gate_m, 1e-12);
+  config.semantics = false;
+  AssociationModel(config, makeTable()).formulate(hypothesis, measurements, 0.0, problem);
+  EXPECT_EQ(problem.costs.columnIndices(), (std::vector<int>{0, 1, 2, 4}));
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam
