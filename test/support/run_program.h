@@ -14,11 +14,10 @@ struct ProgramResult {
   std::string output;  ///< standard output and standard error
 };
 
-/// Runs a program of the package through the shell.
-inline ProgramResult runProgramOfPackage(const std::string& name, const std::string& arguments) {
-  const std::string command = "'" + std::string(SMHT_PROGRAM_DIR) + "/" + name + "' " + arguments + " 2>&1";
+/// Runs a program by its path through the shell.
+inline ProgramResult runProgram(const std::string& path, const std::string& arguments) {
   ProgramResult result;
-  FILE* pipe = ::popen(command.c_str(), "r");
+  FILE* pipe = ::popen(("'" + path + "' " + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return result;
   std::array<char, 4096> buffer{};
   while (std::size_t length = std::fread(buffer.data(), 1, buffer.size(), pipe))
@@ -26,6 +25,11 @@ inline ProgramResult runProgramOfPackage(const std::string& name, const std::str
   const int status = ::pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return result;
+}
+
+/// Runs a program of the package.
+inline ProgramResult runProgramOfPackage(const std::string& name, const std::string& arguments) {
+  return runProgram(std::string(SMHT_PROGRAM_DIR) + "/" + name, arguments);
 }
 
 }  // namespace semantic_mht_slam
