@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -11,13 +10,12 @@
 #include "semantic_mht_slam/evaluation/svg_plot.h"
 #include "semantic_mht_slam/evaluation/trajectory_error.h"
 #include "semantic_mht_slam/io/calibration_file.h"
-#include "semantic_mht_slam/io/csv_file.h"
-#include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 
 #include "evaluate_commands.h"
 #include "evaluate_files.h"
+#include "evaluate_landmark_files.h"
 #include "evaluate_landmark_sightings.h"
 #include "program.h"
 
@@ -57,72 +55,6 @@ struct Options {
   bool as_json = false;
 };
 
-/// A landmark with the number that its file gives it, or its place in the file.
-struct NumberedLandmarks {
-  std::vector<std::int64_t> ids;
-  std::vector<PointLandmark> landmarks;
-};
-
-bool hasHeader(const std::string& content) {
-  bool is_first = true;
-  bool has_header = true;
-  forEachLine(content, [&](int, std::string_view text) {
-    if (is_first) has_header = !parseDouble(split(text, ',').front());
-    is_first = false;
-  });
-  return has_header;
-}
-
-NumberedLandmarks readRows(const std::string& path, const std::string& content) {
-  NumberedLandmarks result;
-  forEachLine(content, [&](int line, std::string_view text) {
-    const std::vector<std::string_view> cells = split(text, ',');
-    if (cells.size() != 2 && cells.size() != 3) throw InputError(at(path, line) + ": a row x,y or x,y,z was expected");
-    PointLandmark landmark;
-    landmark.has_height = cells.size() == 3;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::optional<double> value = parseDouble(cells[i]);
-      if (!value || !std::isfinite(*value)) {
-        throw InputError(at(path, line) + ": '" + std::string(cells[i]) + "' is not a finite number");
-      }
-      landmark.position_m(static_cast<Eigen::Index>(i)) = *value;
-    }
-    result.ids.push_back(static_cast<std::int64_t>(result.ids.size()));
-    result.landmarks.push_back(landmark);
-  });
-  return result;
-}
-
-NumberedLandmarks readTable(const std::string& path) {
-  const CsvReader reader({"x", "y"}, {"z", "class", "id", "landmark", "existence", "observations"});
-  NumberedLandmarks result;
-  reader.read(path, [&](const CsvRow& row) {
-    PointLandmark landmark;
-    landmark.has_height = row.has(2);
-    landmark.position_m = {row.number(0), row.number(1), row.optionalNumber(2).value_or(0.0)};
-    if (row.has(3)) landmark.class_name = std::string(row.text(3));
-    const std::size_t id_column = row.has(4) ? 4 : 5;
-    result.ids.push_back(row.has(id_column) ? row.integer(id_column) : static_cast<std::int64_t>(result.ids.size()));
-    result.landmarks.push_back(landmark);
-  });
-  return result;
-}
-
-/// Landmarks of the wanted classes; those of unknown class always stay.
-NumberedLandmarks readLandmarks(const std::string& path, const std::vector<std::string>& classes) {
-  const std::string content = readFile(path);
-  NumberedLandmarks all = hasHeader(content) ? readTable(path) : readRows(path, content);
-  if (classes.empty()) return all;
-  NumberedLandmarks result;
-  for (std::size_t i = 0; i < all.ids.size(); ++i) {
-    const std::string& name = all.landmarks[i].class_name;
-    if (!name.empty() && std::find(classes.begin(), classes.end(), name) == classes.end()) continue;
-    result.ids.push_back(all.ids[i]);
-    result.landmarks.push_back(all.landmarks[i]);
-  }
-  return result;
-}
-
 std::vector<Eigen::Vector3d> positions(const std::vector<Pose>& poses, const Pose& T_target_world) {
   std::vector<Eigen::Vector3d> result;
   result.reserve(poses.size());
@@ -130,33 +62,47 @@ std::vector<Eigen::Vector3d> positions(const std::vector<Pose>& poses, const Pos
   return result;
 }
 
-Pose velodyneCalibration(const Options& options) {
-  return readCalibration(options.calibration_path.empty() ? calibrationBeside(options.poses_path)
-                                                          : options.calibration_path);
+/// The true drive, and where its Velodyne was.
+struct TrueDrive {
+  double length_m = 0.0;
+  Pose T_cam0_velodyne;  ///< with `T_world_velodyne`, empty unless something needs the Velodyne
+  std::vector<Pose> T_world_velodyne;
+};
+
+bool needsVelodyne(const Options& options) {
+  return !options.objects_path.empty() || (!options.trajectory_path.empty() && options.alignment != "none");
+}
+
+TrueDrive readDrive(const Options& options) {
+  const std::vector<Pose> T_world_cam0 = readKittiTrajectory(options.poses_path);
+  TrueDrive drive;
+  drive.length_m = pathLength(poseMatrices(T_world_cam0));
+  if (!needsVelodyne(options)) return drive;
+  drive.T_cam0_velodyne = readCalibration(options.calibration_path.empty() ? calibrationBeside(options.poses_path)
+                                                                           : options.calibration_path);
+  drive.T_world_velodyne = inVelodyneFrame(T_world_cam0, drive.T_cam0_velodyne);
+  return drive;
 }
 
 /// From the frame of the map to that of the true landmarks, by the trajectories of the Velodyne in both.
-Pose alignment(const Options& options, const std::vector<Pose>& T_world_cam0) {
+Pose alignment(const Options& options, const TrueDrive& drive) {
   if (options.trajectory_path.empty() || options.alignment == "none") return Pose::identity();
   const std::vector<Pose> estimate_cam0 = readKittiTrajectory(options.trajectory_path);
-  requireSameLength(options.poses_path, T_world_cam0.size(), options.trajectory_path, estimate_cam0.size());
-  const Pose T_cam0_velodyne = velodyneCalibration(options);
-  const std::vector<Pose> truth = inVelodyneFrame(T_world_cam0, T_cam0_velodyne);
+  const std::vector<Pose>& truth = drive.T_world_velodyne;
+  requireSameLength(options.poses_path, truth.size(), options.trajectory_path, estimate_cam0.size());
   const std::vector<Eigen::Vector3d> true_m = positions(truth, truth.front().inverse());
   const std::vector<Eigen::Vector3d> estimated_m =
-      positions(inVelodyneFrame(estimate_cam0, T_cam0_velodyne), Pose::identity());
+      positions(inVelodyneFrame(estimate_cam0, drive.T_cam0_velodyne), Pose::identity());
   return options.alignment == "se2" ? planarAlignment(estimated_m, true_m) : rigidAlignment(estimated_m, true_m);
 }
 
-LandmarkComparison comparison(const Options& options) {
+LandmarkComparison comparison(const Options& options, const TrueDrive& drive) {
   LandmarkComparison result;
   result.radius_m = options.radius_m;
   result.match_class = !options.ignore_class;
   if (options.poses_path.empty()) return result;
-  const std::vector<Pose> T_world_cam0 = readKittiTrajectory(options.poses_path);
-  const double length_m = pathLength(poseMatrices(T_world_cam0));
-  if (length_m > 0.0) result.driven_length_m = length_m;
-  result.T_truth_map = alignment(options, T_world_cam0);
+  if (drive.length_m > 0.0) result.driven_length_m = drive.length_m;
+  result.T_truth_map = alignment(options, drive);
   return result;
 }
 
@@ -246,11 +192,11 @@ void check(const Options& options) {
 }
 
 /// Without those that hardly a frame shows.
-NumberedLandmarks seenOnes(const Options& options, const NumberedLandmarks& truth) {
-  const Pose T_cam0_velodyne = velodyneCalibration(options);
-  const std::vector<Pose> T_world_velodyne = inVelodyneFrame(readKittiTrajectory(options.poses_path), T_cam0_velodyne);
+NumberedLandmarks seenOnes(const Options& options, const TrueDrive& drive, const NumberedLandmarks& truth) {
   std::vector<Pose> T_truth_velodyne;
-  for (const Pose& pose : T_world_velodyne) T_truth_velodyne.push_back(T_world_velodyne.front().inverse() * pose);
+  for (const Pose& pose : drive.T_world_velodyne) {
+    T_truth_velodyne.push_back(drive.T_world_velodyne.front().inverse() * pose);
+  }
   const std::vector<int> frames =
       framesThatShow(truth.landmarks, options.objects_path, readClassTable(options.table_path), options.classes,
                      T_truth_velodyne, options.radius_m);
@@ -270,9 +216,10 @@ int evaluateLandmarks(const std::vector<std::string>& arguments) {
   if (!parseOrHelp(arguments, kUsage, describe(options))) return 0;
   check(options);
   const NumberedLandmarks all = readLandmarks(options.truth_path, options.classes);
-  const NumberedLandmarks truth = options.objects_path.empty() ? all : seenOnes(options, all);
+  const TrueDrive drive = options.poses_path.empty() ? TrueDrive{} : readDrive(options);
+  const NumberedLandmarks truth = options.objects_path.empty() ? all : seenOnes(options, drive, all);
   const NumberedLandmarks map = readLandmarks(options.map_path, options.classes);
-  const LandmarkComparison how = comparison(options);
+  const LandmarkComparison how = comparison(options, drive);
   LandmarkError error = landmarkError(truth.landmarks, map.landmarks, how);
   if (!options.objects_path.empty()) {  // what stands at a landmark that is hardly seen is no ghost
     const LandmarkError of_all = landmarkError(all.landmarks, map.landmarks, how);
