@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
+#include <string_view>
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -58,7 +58,7 @@ std::vector<MapSection> toMessages(const StateSection& section) {
   constexpr std::size_t kPiece = std::size_t{1} << 20U;
   std::vector<MapSection> messages;
   for (std::size_t begin = 0; begin < section.bytes.size() || messages.empty(); begin += kPiece) {
-    const std::string piece = section.bytes.substr(begin, kPiece);
+    const std::string_view piece = std::string_view(section.bytes).substr(begin, kPiece);
     MapSection message;
     message.name = section.name;
     message.version = static_cast<std::uint32_t>(section.version);
