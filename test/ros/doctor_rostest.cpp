@@ -7,9 +7,12 @@
 
 #include "support/run_program.h"
 #include "support/running_node.h"
+#include "support/spinner.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
 
 /// Feeds a node in real time, stamped by this machine's clock, until it goes out of scope.
 class Feeder {
@@ -132,11 +135,3 @@ TEST(DoctorRosTest, BadArgumentsEndWithCodeOne) {
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "doctor_rostest");
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  return RUN_ALL_TESTS();
-}

@@ -14,11 +14,14 @@
 #include "semantic_mht_slam/ros/map_file.h"
 
 #include "support/running_node.h"
+#include "support/spinner.h"
 #include "support/square_drive.h"
 #include "support/temporary_folder.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
 
 /// A node that drives a simulated square.
 class DrivingNode {
@@ -243,11 +246,3 @@ TEST(MapServicesTest, InterruptEndsTheNodeWithinTwoSecondsWhileItLoads) {
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "map_services_test");
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  return RUN_ALL_TESTS();
-}

@@ -11,9 +11,12 @@
 #include <semantic_mht_slam/SetMode.h>
 
 #include "support/running_node.h"
+#include "support/spinner.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
 
 TEST(NodeFaultsTest, QueueThatIsFullDropsAndSaysSoAndThePoseGoesOn) {
   RunningNode node("full", {"_node/queue_size:=1"});
@@ -203,11 +206,3 @@ TEST(NodeServicesTest, SetModeRefusesWhatThereIsNot) {
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "node_faults_test");
-  ros::AsyncSpinner spinner(2);
-  spinner.start();
-  return RUN_ALL_TESTS();
-}

@@ -214,9 +214,3 @@ TEST_F(ImageExtractorNodeTest, LabelImageWithCloudAndCameraBecomesObjectsOnceThe
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "object_extractor_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -14,11 +14,14 @@
 #include "semantic_mht_slam/ros/bag_file.h"
 
 #include "support/running_node.h"
+#include "support/spinner.h"
 #include "support/square_drive.h"
 #include "support/temporary_folder.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
 
 constexpr int kFrames = 200;  // 20 s at the speed at which they were recorded
 
@@ -91,11 +94,3 @@ TEST(PlayRatesTest, TheMapFileIsTheSameAtEveryPlayRateAndOnABusyMachine) {
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "play_rates_test");
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
-  return RUN_ALL_TESTS();
-}

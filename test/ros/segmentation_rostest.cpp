@@ -103,9 +103,3 @@ TEST(SegmentationProgramTest, MissingAndBrokenNetworksEndTheNodeWithOneLine) {
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "segmentation_test");
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -20,10 +20,13 @@
 #include "semantic_mht_slam/ros/conversions.h"
 
 #include "support/recordings.h"
+#include "support/spinner.h"
 #include "support/temporary_folder.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
 
 constexpr std::size_t kFrames = 120;
 constexpr Stamp kOrigin = 1000000000;
@@ -261,11 +264,3 @@ TEST(SlamNodeParametersTest, UnknownOrBadParametersEndTheNodeWithCode1) {
 
 }  // namespace
 }  // namespace semantic_mht_slam
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  ros::init(argc, argv, "slam_node_test");
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
-  return RUN_ALL_TESTS();
-}

@@ -30,7 +30,7 @@ bool waitFor(const Predicate& isTrue, double limit_s = 15.0) {
 }
 
 /// A slam_node of its own for a test, under its own name with topics and services of its own, fed by the test. Needs a
-/// running spinner.
+/// running `Spinner`.
 class RunningNode {
  public:
   explicit RunningNode(const std::string& name, std::vector<std::string> parameters = {})
