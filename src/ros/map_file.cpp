@@ -167,8 +167,12 @@ class MapReader {
 
 }  // namespace
 
-SavedMap mapOf(const Slam& slam) {
-  return {slam.snapshot(), slam.landmarks(), slam.trajectory(), slam.map().submaps().size()};
+SavedMap mapOf(const Slam& slam, const std::function<void()>& is_copied) {
+  SavedMap map{slam.snapshot(), slam.landmarks(), {}, slam.map().submaps().size()};
+  const TrajectoryRecord record = slam.trajectoryRecord();
+  is_copied();
+  map.trajectory = trajectoryOf(record);
+  return map;
 }
 
 std::size_t writeMapFile(const std::string& path, const SavedMap& map, const SystemConfig& config,

@@ -222,10 +222,10 @@ void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
   if (slam_->counters().odometry == published_odometry_ || begin < next_trajectory_) return;
   published_odometry_ = slam_->counters().odometry;
   const SlamPublisher::TrajectoryTurn turn = publisher_.takeTrajectoryTurn();
-  const std::vector<StampedPose> trajectory = slam_->trajectory();
+  const TrajectoryRecord record = slam_->trajectoryRecord();
   const std::vector<Pose> odometry = publisher_.odometry();
-  lock.unlock();  // the messages of a long drive take a while to make
-  publisher_.publishTrajectory(turn, trajectory, odometry);
+  lock.unlock();  // the trajectory of a long drive and its messages take a while to make
+  publisher_.publishTrajectory(turn, trajectoryOf(record), odometry);
   const ros::WallTime end = ros::WallTime::now();
   next_trajectory_ = end + ros::WallDuration(kTrajectoryPause * (end - begin).toSec());
 }

@@ -54,11 +54,8 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
 }
 
 bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
-  SavedMap map;
-  {
-    const auto lock = lockCaughtUp();
-    map = mapOf(*slam_);
-  }
+  auto lock = lockCaughtUp();
+  const SavedMap map = mapOf(*slam_, [&] { lock.unlock(); });
   try {
     response.bytes = writeMapFile(request.path, map, config_, classes_);
   } catch (const InputError& error) {

@@ -84,7 +84,11 @@ void SlamPublisher::publishTrajectory(const TrajectoryTurn& turn, const std::vec
   if (!turn.owns_lock()) throw std::logic_error("SlamPublisher: a trajectory is published by who has the turn");
   const auto most = static_cast<std::size_t>(config_.trajectory_poses);
   trajectory_publisher_.publish(toPath(thinned(trajectory, most), config_.map_frame));
-  odometry_publisher_.publish(toOdometryMarkers(thinned(T_odom_base, most), config_.map_frame));
+  odometry_publisher_.publish(toOdometryMarkers(T_odom_base, config_.map_frame));
+}
+
+std::vector<Pose> SlamPublisher::odometry() const {
+  return thinned(odometry_, static_cast<std::size_t>(config_.trajectory_poses));
 }
 
 void SlamPublisher::startAgain(const Slam& slam) {

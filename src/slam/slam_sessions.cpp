@@ -106,45 +106,20 @@ Pose Slam::T_map_odom() const {
   return back_end_ ? back_end_->T_map_odom() : Pose::identity();
 }
 
-std::vector<StampedPose> Slam::trajectory() const {
-  std::vector<StampedPose> trajectory;
-  trajectory.reserve(odometry_.size());
+TrajectoryRecord Slam::trajectoryRecord() const {
+  TrajectoryRecord record{odometry_, {}};
   for (std::size_t s = 0; s < sessions_.size(); ++s) {
-    const std::size_t begin = sessions_[s].first_odometry;
-    const std::size_t end = s + 1 < sessions_.size() ? sessions_[s + 1].first_odometry : odometry_.size();
-    std::vector<Pose> odometry;
-    for (std::size_t i = begin; i < end; ++i) odometry.push_back(odometry_[i].T_world_base);
-    const std::vector<CorrectionAnchor> anchors = correctionAnchors(s);
-    const std::vector<Pose> corrected = anchors.empty() ? odometry : correctTrajectory(odometry, anchors);
-    for (std::size_t i = begin; i < end; ++i) trajectory.push_back({odometry_[i].stamp, corrected[i - begin]});
+    const Session& session = sessions_[s];
+    record.sessions.push_back({session.first_odometry, session.fixes});
+    if (!back_end_) continue;
+    const KeyframeMap& map = back_end_->keyframes();
+    const std::size_t end = s + 1 < sessions_.size() ? sessions_[s + 1].first_keyframe : map.keyframes.size();
+    for (std::size_t k = session.first_keyframe; k < end; ++k) {
+      const MapKeyframe& keyframe = map.keyframes[k];
+      record.sessions.back().fixes.push_back({keyframe.stamp, keyframe.T_odom_base, map.T_map_keyframe[k]});
+    }
   }
-  return trajectory;
-}
-
-std::vector<CorrectionAnchor> Slam::correctionAnchors(std::size_t session) const {
-  std::vector<CorrectionAnchor> anchors;
-  if (!back_end_) return anchors;
-  const KeyframeMap& map = back_end_->keyframes();
-  const bool is_last = session + 1 == sessions_.size();
-  const std::size_t end_keyframe = is_last ? map.keyframes.size() : sessions_[session + 1].first_keyframe;
-  std::vector<MapFix> fixes = sessions_[session].fixes;
-  for (std::size_t k = sessions_[session].first_keyframe; k < end_keyframe; ++k) {
-    fixes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.T_map_keyframe[k]});
-  }
-  std::stable_sort(fixes.begin(), fixes.end(), [](const MapFix& a, const MapFix& b) { return a.stamp < b.stamp; });
-  const auto begin = odometry_.begin() + static_cast<std::ptrdiff_t>(sessions_[session].first_odometry);
-  const auto end = is_last ? odometry_.end()
-                           : odometry_.begin() + static_cast<std::ptrdiff_t>(sessions_[session + 1].first_odometry);
-  for (const MapFix& fix : fixes) {
-    const auto sample = std::lower_bound(begin, end, fix.stamp,
-                                         [](const StampedPose& pose, Stamp stamp) { return pose.stamp < stamp; });
-    if (sample == end) continue;
-    const auto index = static_cast<std::size_t>(sample - begin);
-    if (!anchors.empty() && anchors.back().index >= index) continue;
-    const Pose T_fix_base = fix.T_odom_base.inverse() * sample->T_world_base;
-    anchors.push_back({index, fix.T_map_base * T_fix_base});
-  }
-  return anchors;
+  return record;
 }
 
 std::optional<StampedPose> Slam::latestOdometry() const {

@@ -40,12 +40,13 @@ class SlamPublisher {
   /// Waits for the trajectory that is being published.
   TrajectoryTurn takeTrajectoryTurn() { return TrajectoryTurn(trajectory_mutex_); }
 
-  /// Also what the odometry alone says. The estimator may change meanwhile, for whoever took the turn before that.
+  /// Also what the odometry alone says, from `odometry`. The estimator may change meanwhile, for whoever took the turn
+  /// before that.
   void publishTrajectory(const TrajectoryTurn& turn, const std::vector<StampedPose>& trajectory,
                          const std::vector<Pose>& T_odom_base);
 
-  /// T_odom_base about once a metre.
-  const std::vector<Pose>& odometry() const { return odometry_; }
+  /// T_odom_base about once a metre, thinned as it is published.
+  std::vector<Pose> odometry() const;
 
   /// A new map begins with `slam`: empties what is latched.
   void startAgain(const Slam& slam);

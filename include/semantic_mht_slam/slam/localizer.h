@@ -7,6 +7,7 @@
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/slam/back_end.h"
 #include "semantic_mht_slam/slam/frame.h"
+#include "semantic_mht_slam/slam/map_fix.h"
 
 namespace semantic_mht_slam {
 
@@ -23,13 +24,6 @@ struct LocalizerConfig {
 };
 
 void describe(LocalizerConfig& config, Fields& fields);
-
-/// A moment at which the pose in the map was found.
-struct MapFix {
-  Stamp stamp = 0;
-  Pose T_odom_base;
-  Pose T_map_base;
-};
 
 /// Finds the vehicle in a finished map and follows it, without changing the map. While it is lost, what was seen over
 /// the last metres is looked for among all keyframes by its objects alone (`BackEnd::locate`); the pose is believed

@@ -16,6 +16,7 @@
 #include "semantic_mht_slam/slam/localizer.h"
 #include "semantic_mht_slam/slam/slam_state.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
+#include "semantic_mht_slam/slam/trajectory_record.h"
 
 namespace semantic_mht_slam {
 
@@ -77,7 +78,10 @@ class Slam {
   Pose T_map_odom() const;
 
   /// T_map_base at every odometry sample that was used, in the order of time, one session after the other.
-  std::vector<StampedPose> trajectory() const;
+  std::vector<StampedPose> trajectory() const { return trajectoryOf(trajectoryRecord()); }
+
+  /// What the trajectory is put together from; takes much less time than that.
+  TrajectoryRecord trajectoryRecord() const;
 
   /// T_map_base at the newest odometry sample; empty before the first.
   std::optional<StampedPose> latestPose() const;
@@ -173,7 +177,6 @@ class Slam {
   EarlierMap earlierMap(const Pose& T_odom_submap);
   Pose T_map_submap(int submap) const;
   MixtureLandmark inMap(int submap, const MixtureLandmark& seen) const;
-  std::vector<CorrectionAnchor> correctionAnchors(std::size_t session) const;
 
   Method method_;
   FrameAssembler assembler_;

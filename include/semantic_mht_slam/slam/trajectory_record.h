@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/slam/map_fix.h"
+
+namespace semantic_mht_slam {
+
+/// What a trajectory is put together from: the odometry, and where the vehicle was found to be in the map. A copy, so
+/// that the estimator can go on meanwhile.
+struct TrajectoryRecord {
+  /// A stretch of one odometry.
+  struct Session {
+    std::size_t first_odometry = 0;
+    std::vector<MapFix> fixes;  ///< in any order; of several with one stamp the first counts
+  };
+
+  std::vector<StampedPose> odometry;  ///< T_odom_base by rising stamp, one session after the other
+  std::vector<Session> sessions;      ///< by rising `first_odometry`, from 0
+};
+
+/// T_map_base at every odometry sample: the odometry, corrected so that it passes through the fixes of its session
+/// (see `correctTrajectory`).
+std::vector<StampedPose> trajectoryOf(const TrajectoryRecord& record);
+
+}  // namespace semantic_mht_slam
