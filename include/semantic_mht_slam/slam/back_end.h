@@ -44,7 +44,7 @@ void describe(BackEndConfig& config, Fields& fields);
 struct SubmapPrediction {
   AlignmentPrior prior;  ///< of T_map_submap
   std::vector<Pose> T_map_keyframe;
-  double driven_m = 0.0;  ///< up to the newest keyframe
+  double driven_m = 0.0;  ///< up to the newest keyframe; not needed later, but map files hold it (section `input`)
 };
 
 /// Whether a finished submap was searched for places seen before.
