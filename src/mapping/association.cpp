@@ -96,18 +96,18 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
   if (!narrow) return false;
   candidate.mahalanobis_sq = narrow->mahalanobis_sq;
   log_density = narrow->log_density;
-  candidate.log_part_likelihood = narrow->log_density;
   const double outlier_prob = config_.association.outlier_prob;
-  if (outlier_prob == 0.0) return true;
+  if (outlier_prob == 0.0 && config_.association.split_prob == 0.0) return true;
   Eigen::Matrix3d wide_cov = cov;
   wide_cov.diagonal() += outlier_variance_m2;
   const auto wide = evaluate({Eigen::Vector3d::Zero(), wide_cov}, d);
   if (!wide) return false;
+  candidate.log_part_likelihood = wide->log_density;
+  if (outlier_prob == 0.0) return true;
   const double inlier = std::log1p(-outlier_prob) + narrow->log_density;
   const double outlier = std::log(outlier_prob) + wide->log_density;
   candidate.is_outlier = outlier > inlier;
   candidate.mahalanobis_sq = wide->mahalanobis_sq;
-  candidate.log_part_likelihood = wide->log_density;
   log_density = std::max(inlier, outlier) + std::log1p(std::exp(-std::abs(inlier - outlier)));
   return true;
 }

@@ -84,7 +84,10 @@ MapperConfig defaultsOf(Estimator estimator) {
 }
 
 void describe(MapperConfig& config, Fields& fields) {
-  fields.add("semantics", config.semantics, "false: all classes count as one (ablation).");
+  fields.add(
+      "semantics", config.semantics,
+      "false: classes say nothing of which detection is which landmark (ablation); noise and probability of detection "
+      "stay those of the class.");
   fields.add<MeasurementModel>(
       "measurement_model", config.measurement_model,
       {{"additive", MeasurementModel::kAdditive}, {"range_bearing", MeasurementModel::kRangeBearing}},
