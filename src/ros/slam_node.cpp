@@ -33,10 +33,13 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   noteStatus();
   subscribe();
   advertiseServices();
-  slow_timer_ =
-      handle_.createWallTimer(ros::WallDuration(config_.node.trajectory_period_s), &SlamNode::publishSlowTopics, this);
+  ros::NodeHandle slow_handle(handle_);
+  slow_handle.setCallbackQueue(&slow_queue_);
+  slow_timer_ = slow_handle.createWallTimer(ros::WallDuration(config_.node.trajectory_period_s),
+                                            &SlamNode::publishSlowTopics, this);
   diagnostics_ = std::make_unique<NodeDiagnostics>(handle_, private_handle, [this] { return status(); });
   worker_ = std::thread([this] { work(); });
+  slow_spinner_.start();
 }
 
 SlamNode::~SlamNode() {
@@ -46,6 +49,7 @@ SlamNode::~SlamNode() {
   services_.clear();
   diagnostics_.reset();
   slow_timer_.stop();
+  slow_spinner_.stop();
   queue_.close();
   worker_.join();
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
@@ -110,9 +111,9 @@ class SlamNode {
   TopicMonitor odometry_monitor_;
   TopicMonitor objects_monitor_;
 
-  // Of the worker, or of the spinner thread.
+  // Of the worker, of the timer's thread, or of the spinner thread.
   Warnings warnings_;
-  std::size_t published_odometry_ = 0;
+  std::size_t published_odometry_ = 0;  ///< guarded by `slam_mutex_`
   std::size_t published_live_ = 1;
   ros::WallTime next_trajectory_;
   ros::WallTime started_ = ros::WallTime::now();
@@ -124,6 +125,8 @@ class SlamNode {
   ros::Subscriber objects_subscriber_;
   ros::Subscriber initial_pose_subscriber_;
   std::vector<ros::ServiceServer> services_;
+  ros::CallbackQueue slow_queue_;  ///< of a thread of its own, so that no message waits for a long trajectory
+  ros::AsyncSpinner slow_spinner_{1, &slow_queue_};
   ros::WallTimer slow_timer_;
   std::unique_ptr<NodeDiagnostics> diagnostics_;
   std::thread worker_;
