@@ -115,9 +115,10 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   finding.error(now.estimator.odometry_wrong_frames > before.estimator.odometry_wrong_frames,
                 odometry.topic + " goes from " + now.estimator.wrong_frames + ", expected is " + expected,
                 "set node/odom_frame to its header.frame_id and node/base_frame to its child_frame_id");
-  finding.error(counters.odometry_invalid > before.estimator.counters.odometry_invalid,
-                odometry.topic + " holds poses that are not finite or whose quaternion has no unit norm",
-                "mend the odometry's orientation: w = 1 for none, never all zero");
+  finding.error(
+      counters.odometry_invalid > before.estimator.counters.odometry_invalid,
+      odometry.topic + " holds poses that are not finite, or beyond 1e10 m, or whose quaternion has no unit norm",
+      "mend the odometry's orientation: w = 1 for none, never all zero");
   finding.warn(counters.odometry_not_rising > before.estimator.counters.odometry_not_rising,
                odometry.topic + " holds stamps that do not rise",
                "let one node alone publish it, with a new header.stamp in every message");

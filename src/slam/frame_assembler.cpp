@@ -7,7 +7,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kFurthest_m = 1e7;  // a quarter of the way round the Earth; beyond it doubles lose what is measured
+constexpr double kFurthest_m = 1e10;  // where a double still tells micrometres
 
 bool isUsable(const Pose& T_odom_base) {
   return T_odom_base.isValid() && (T_odom_base.translation_m.cwiseAbs().array() <= kFurthest_m).all();

@@ -83,10 +83,12 @@ TEST(FrameAssemblerTest, BadOdometryIsDroppedAndCounted) {
   StampedPose broken = odometryAt(2.0);
   broken.T_world_base.translation_m.x() = std::nan("");
   EXPECT_FALSE(assembler.addOdometry(broken));
+  broken.T_world_base.translation_m.x() = 1e11;
+  EXPECT_FALSE(assembler.addOdometry(broken));
   EXPECT_TRUE(assembler.addOdometry(odometryAt(2.0)));
   EXPECT_EQ(assembler.counters().odometry, 2U);
   EXPECT_EQ(assembler.counters().odometry_not_rising, 2U);
-  EXPECT_EQ(assembler.counters().odometry_invalid, 1U);
+  EXPECT_EQ(assembler.counters().odometry_invalid, 2U);
 }
 
 TEST(FrameAssemblerTest, BadDetectionsAreDroppedOneByOneAndTheRestStays) {
