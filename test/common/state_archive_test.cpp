@@ -79,5 +79,16 @@ TEST(StateArchiveTest, BytesThatAreNoSuchValueAreRefused) {
   expectInputError([&] { StateArchive(std::string_view(wide.written()))(narrow); }, {"out of range"});
 }
 
+TEST(StateArchiveTest, AMatrixOfAnotherShapeThanItsTypeHasIsRefused) {
+  for (auto [rows, cols] : {std::pair<Eigen::Index, Eigen::Index>{3, 0}, {3, 2}, {-1, 1}, {1 << 20, 1}}) {
+    StateArchive writer;
+    writer(rows, cols);
+    const std::string bytes = writer.written() + std::string(64, '\0');
+    Eigen::VectorXd column = Eigen::VectorXd::Zero(2);
+    expectInputError([&] { StateArchive(std::string_view(bytes))(column); }, {"impossible size"});
+    EXPECT_EQ(column.size(), 2);
+  }
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

@@ -221,12 +221,13 @@ void StateArchive::resize(Matrix& values) {
   Eigen::Index cols = values.cols();
   (*this)(rows, cols);
   if (!is_reading_) return;
-  const auto fits = [](Eigen::Index size, Eigen::Index most) {
+  const auto fits = [](Eigen::Index size, Eigen::Index fixed, Eigen::Index most) {
+    if (fixed != Eigen::Dynamic) return size == fixed;
     return size >= 0 && size <= (most == Eigen::Dynamic ? kMaxSide : most);
   };
-  if (!fits(rows, Matrix::MaxRowsAtCompileTime) || !fits(cols, Matrix::MaxColsAtCompileTime)) {
-    fail("a matrix has an impossible size");
-  }
+  const bool is_possible = fits(rows, Matrix::RowsAtCompileTime, Matrix::MaxRowsAtCompileTime) &&
+                           fits(cols, Matrix::ColsAtCompileTime, Matrix::MaxColsAtCompileTime);
+  if (!is_possible) fail("a matrix has an impossible size");
   values.setZero(rows, cols);
 }
 
