@@ -55,18 +55,18 @@ struct Options {
   bool as_json = false;
 };
 
-std::vector<Eigen::Vector3d> positions(const std::vector<Pose>& poses, const Pose& T_target_world) {
+std::vector<Eigen::Vector3d> positions(const std::vector<Pose>& poses) {
   std::vector<Eigen::Vector3d> result;
   result.reserve(poses.size());
-  for (const Pose& pose : poses) result.push_back(T_target_world * pose.translation_m);
+  for (const Pose& pose : poses) result.push_back(pose.translation_m);
   return result;
 }
 
 /// The true drive, and where its Velodyne was.
 struct TrueDrive {
   double length_m = 0.0;
-  Pose T_cam0_velodyne;  ///< with `T_world_velodyne`, empty unless something needs the Velodyne
-  std::vector<Pose> T_world_velodyne;
+  Pose T_cam0_velodyne;                ///< with `T_truth_velodyne`, empty unless something needs the Velodyne
+  std::vector<Pose> T_truth_velodyne;  ///< in the frame of the true landmarks, which is the first of them
 };
 
 bool needsVelodyne(const Options& options) {
@@ -80,7 +80,9 @@ TrueDrive readDrive(const Options& options) {
   if (!needsVelodyne(options)) return drive;
   drive.T_cam0_velodyne = readCalibration(options.calibration_path.empty() ? calibrationBeside(options.poses_path)
                                                                            : options.calibration_path);
-  drive.T_world_velodyne = inVelodyneFrame(T_world_cam0, drive.T_cam0_velodyne);
+  drive.T_truth_velodyne = inVelodyneFrame(T_world_cam0, drive.T_cam0_velodyne);
+  const Pose T_truth_world = drive.T_truth_velodyne.front().inverse();
+  for (Pose& pose : drive.T_truth_velodyne) pose = T_truth_world * pose;
   return drive;
 }
 
@@ -88,11 +90,10 @@ TrueDrive readDrive(const Options& options) {
 Pose alignment(const Options& options, const TrueDrive& drive) {
   if (options.trajectory_path.empty() || options.alignment == "none") return Pose::identity();
   const std::vector<Pose> estimate_cam0 = readKittiTrajectory(options.trajectory_path);
-  const std::vector<Pose>& truth = drive.T_world_velodyne;
+  const std::vector<Pose>& truth = drive.T_truth_velodyne;
   requireSameLength(options.poses_path, truth.size(), options.trajectory_path, estimate_cam0.size());
-  const std::vector<Eigen::Vector3d> true_m = positions(truth, truth.front().inverse());
-  const std::vector<Eigen::Vector3d> estimated_m =
-      positions(inVelodyneFrame(estimate_cam0, drive.T_cam0_velodyne), Pose::identity());
+  const std::vector<Eigen::Vector3d> true_m = positions(truth);
+  const std::vector<Eigen::Vector3d> estimated_m = positions(inVelodyneFrame(estimate_cam0, drive.T_cam0_velodyne));
   return options.alignment == "se2" ? planarAlignment(estimated_m, true_m) : rigidAlignment(estimated_m, true_m);
 }
 
@@ -193,13 +194,9 @@ void check(const Options& options) {
 
 /// Without those that hardly a frame shows.
 NumberedLandmarks seenOnes(const Options& options, const TrueDrive& drive, const NumberedLandmarks& truth) {
-  std::vector<Pose> T_truth_velodyne;
-  for (const Pose& pose : drive.T_world_velodyne) {
-    T_truth_velodyne.push_back(drive.T_world_velodyne.front().inverse() * pose);
-  }
   const std::vector<int> frames =
       framesThatShow(truth.landmarks, options.objects_path, readClassTable(options.table_path), options.classes,
-                     T_truth_velodyne, options.radius_m);
+                     drive.T_truth_velodyne, options.radius_m);
   NumberedLandmarks result;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (frames[i] < options.min_frames) continue;

@@ -167,10 +167,10 @@ class MapReader {
 
 }  // namespace
 
-SavedMap mapOf(const Slam& slam, const std::function<void()>& is_copied) {
+SavedMap mapOf(const Slam& slam, const std::function<void()>& on_copied) {
   SavedMap map{slam.snapshot(), slam.landmarks(), {}, slam.map().submaps().size()};
   const TrajectoryRecord record = slam.trajectoryRecord();
-  is_copied();
+  on_copied();
   map.trajectory = trajectoryOf(record);
   return map;
 }

@@ -16,8 +16,8 @@ struct Candidate {
   double log_likelihood = 0.0;  ///< log N(p; pi, P + Sigma) + log P(c | class probabilities), 1/m^3
   double mahalanobis_sq = 0.0;
   bool is_outlier = false;  ///< better explained by a centroid that is far off
-  double log_part_likelihood =
-      0.0;  ///< the same as `log_likelihood` for a part of the object, whose centroid is far off
+  /// As `log_likelihood`, of a part of the object, whose centroid is far off.
+  double log_part_likelihood = 0.0;
 };
 
 /// What the association of one frame with one hypothesis has to choose from.

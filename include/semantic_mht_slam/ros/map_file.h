@@ -22,10 +22,10 @@ struct SavedMap {
   std::size_t submaps = 0;                 ///< finished ones
 };
 
-/// The same of an estimator, which may change from the moment on when `is_copied` is called: the trajectory is put
+/// The same of an estimator, which may change from the moment on when `on_copied` is called: the trajectory is put
 /// together after that.
 SavedMap mapOf(
-    const Slam& slam, const std::function<void()>& is_copied = [] {});
+    const Slam& slam, const std::function<void()>& on_copied = [] {});
 
 /// Writes a map as a bag with the topics /map_header, /map_section, /map and /trajectory (docs/map_files.md). The file
 /// appears under its name when it is complete and on the disk. Returns its size in bytes. Throws InputError.
