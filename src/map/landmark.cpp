@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/map/landmark.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace semantic_mht_slam {
@@ -8,6 +9,16 @@ ClassIndex MixtureLandmark::mostLikelyClass() const {
   Eigen::Index best = 0;
   class_probs.maxCoeff(&best);
   return static_cast<ClassIndex>(best);
+}
+
+std::vector<MixtureLandmark>::const_iterator placeOf(LandmarkId id, const std::vector<MixtureLandmark>& landmarks) {
+  return std::lower_bound(landmarks.begin(), landmarks.end(), id,
+                          [](const MixtureLandmark& landmark, LandmarkId i) { return landmark.id < i; });
+}
+
+const MixtureLandmark* findLandmark(LandmarkId id, const std::vector<MixtureLandmark>& landmarks) {
+  const auto place = placeOf(id, landmarks);
+  return place == landmarks.end() || place->id != id ? nullptr : &*place;
 }
 
 Gaussian3 moments(const std::vector<MixtureComponent>& components) {

@@ -20,7 +20,7 @@ class SceneOfSubmap {
       : submap_(submap), T_keyframe_submap_(T_odom_keyframe.inverse() * submap.T_odom_submap), floor_m_(floor_m) {}
 
   std::optional<SceneObject> find(LandmarkId id) const {
-    const MixtureLandmark* landmark = SubmapArchive::findLandmark(submap_, id);
+    const MixtureLandmark* landmark = findLandmark(id, submap_.landmarks);
     if (landmark == nullptr) return std::nullopt;
     return sceneObject(*landmark, T_keyframe_submap_, floor_m_);
   }

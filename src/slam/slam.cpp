@@ -131,12 +131,16 @@ EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {
   const auto is_within = [&](const Eigen::Vector3d& position_m, double distance_m) {
     return (position_m - prior.T_a_b.translation_m).head<2>().norm() <= distance_m;
   };
-  map_.forEachLandmark([&](int submap, const MixtureLandmark& seen) {
-    if (seen.last_submap > newest) return;
-    if (!is_within(T_map_submap(submap) * seen.position.mean_m, radius_m + kGraphShift_m)) return;
-    const MixtureLandmark landmark = inMap(submap, seen);
-    if (is_within(landmark.position.mean_m, radius_m)) earlier.landmarks.push_back(transformed(T_submap_map, landmark));
-  });
+  for (int submap = 0; submap < static_cast<int>(map_.submaps().size()); ++submap) {
+    const Pose T_map_seen = T_map_submap(submap);
+    if (!is_within(T_map_seen.translation_m, radius_m + kGraphShift_m + map_.reach_m(submap))) continue;
+    map_.forEachLandmarkOf(submap, [&](const MixtureLandmark& seen) {
+      if (seen.last_submap > newest || !is_within(T_map_seen * seen.position.mean_m, radius_m + kGraphShift_m)) return;
+      const MixtureLandmark landmark = inMap(submap, seen);
+      if (!is_within(landmark.position.mean_m, radius_m)) return;
+      earlier.landmarks.push_back(transformed(T_submap_map, landmark));
+    });
+  }
   if (submap_frames_.empty()) prediction_ = next_prediction_;  // no submap before it is still being finished
   return earlier;
 }

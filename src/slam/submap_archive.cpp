@@ -21,15 +21,15 @@ MixtureLandmark transformed(const Pose& T_a_b, const MixtureLandmark& landmark) 
 
 void SubmapArchive::add(std::shared_ptr<const Submap> submap) {
   const int index = static_cast<int>(submaps_.size());
-  for (const MixtureLandmark& landmark : submap->landmarks) {
-    const LandmarkId id = resolve(landmark.id);
-    landmarks_[id] = {index, landmark};
-    landmarks_[id].landmark.id = id;
+  lasting_.emplace_back();
+  for (MixtureLandmark landmark : submap->landmarks) {
+    landmark.id = resolve(landmark.id);
+    place(index, std::move(landmark));
   }
   for (const auto& [merged, survivor] : submap->merged) {
     // What the mapper merged, it has already put together in the survivor.
     if (resolve(merged) == resolve(survivor)) continue;
-    landmarks_.erase(resolve(merged));
+    remove(resolve(merged));
     merge(merged, survivor);
   }
   submaps_.push_back(std::move(submap));
@@ -39,27 +39,63 @@ void SubmapArchive::merge(LandmarkId merged, LandmarkId survivor) {
   merged = resolve(merged);
   survivor = resolve(survivor);
   if (!merged_ids_.merge(merged, survivor)) return;
-  const auto gone = landmarks_.find(merged);
-  if (gone == landmarks_.end()) return;
-  const auto kept = landmarks_.find(survivor);
-  if (kept == landmarks_.end()) {
-    landmarks_[survivor] = gone->second;
-    landmarks_[survivor].landmark.id = survivor;
+  const MixtureLandmark* gone = find(merged);
+  if (gone == nullptr) return;
+  MixtureLandmark* kept = find(survivor);
+  if (kept == nullptr) {
+    MixtureLandmark renamed = *gone;
+    renamed.id = survivor;
+    place(submap_of_.at(merged), std::move(renamed));
   } else {
-    MixtureLandmark& landmark = kept->second.landmark;
-    const MixtureLandmark& other = gone->second.landmark;
-    landmark.observations += other.observations;
-    landmark.existence_prob = std::max(landmark.existence_prob, other.existence_prob);
-    landmark.first_submap = std::min(landmark.first_submap, other.first_submap);
-    landmark.last_submap = std::max(landmark.last_submap, other.last_submap);
+    kept->observations += gone->observations;
+    kept->existence_prob = std::max(kept->existence_prob, gone->existence_prob);
+    kept->first_submap = std::min(kept->first_submap, gone->first_submap);
+    kept->last_submap = std::max(kept->last_submap, gone->last_submap);
   }
-  landmarks_.erase(merged);
+  remove(merged);
+}
+
+const MixtureLandmark* SubmapArchive::find(LandmarkId id) const {
+  const auto known = submap_of_.find(id);
+  if (known == submap_of_.end()) return nullptr;
+  return findLandmark(id, lasting_[static_cast<std::size_t>(known->second)].landmarks);
+}
+
+MixtureLandmark* SubmapArchive::find(LandmarkId id) {
+  const MixtureLandmark* landmark = std::as_const(*this).find(id);
+  if (landmark == nullptr) return nullptr;
+  auto& landmarks = lasting_[static_cast<std::size_t>(submap_of_.at(id))].landmarks;
+  return &landmarks[static_cast<std::size_t>(landmark - landmarks.data())];
+}
+
+void SubmapArchive::place(int submap, MixtureLandmark landmark) {
+  remove(landmark.id);
+  Lasting& lasting = lasting_[static_cast<std::size_t>(submap)];
+  lasting.reach_m = std::max(lasting.reach_m, landmark.position.mean_m.norm());
+  submap_of_[landmark.id] = submap;
+  lasting.landmarks.insert(placeOf(landmark.id, lasting.landmarks), std::move(landmark));
+}
+
+void SubmapArchive::remove(LandmarkId id) {
+  const MixtureLandmark* known = find(id);
+  if (known == nullptr) return;
+  auto& landmarks = lasting_[static_cast<std::size_t>(submap_of_.at(id))].landmarks;
+  landmarks.erase(landmarks.begin() + (known - landmarks.data()));
+  submap_of_.erase(id);
 }
 
 void SubmapArchive::forEachLandmark(
     const std::function<void(int submap, const MixtureLandmark& landmark)>& visit) const {
-  for (const auto& [id, entry] : landmarks_) {
-    if (isKept(entry)) visit(entry.submap, entry.landmark);
+  for (const auto& [id, submap] : submap_of_) {
+    const MixtureLandmark& landmark = *find(id);
+    if (isKept(landmark)) visit(submap, landmark);
+  }
+}
+
+void SubmapArchive::forEachLandmarkOf(int submap,
+                                      const std::function<void(const MixtureLandmark& landmark)>& visit) const {
+  for (const MixtureLandmark& landmark : lasting_[static_cast<std::size_t>(submap)].landmarks) {
+    if (isKept(landmark)) visit(landmark);
   }
 }
 
@@ -70,8 +106,8 @@ std::map<LandmarkId, std::vector<LandmarkId>> SubmapArchive::mergedInto() const 
 }
 
 bool SubmapArchive::isKept(LandmarkId id) const {
-  const auto found = landmarks_.find(id);
-  return found != landmarks_.end() && isKept(found->second);
+  const MixtureLandmark* landmark = find(id);
+  return landmark != nullptr && isKept(*landmark);
 }
 
 std::vector<DetectionAssociation> SubmapArchive::associations() const {

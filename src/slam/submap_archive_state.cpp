@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/map/map_state.h"
 #include "semantic_mht_slam/slam/submap_archive.h"
@@ -17,35 +15,33 @@ std::string bytesOf(const MixtureLandmark& landmark) {
 
 }  // namespace
 
-const MixtureLandmark* SubmapArchive::findLandmark(const Submap& submap, LandmarkId id) {
-  const auto found = std::lower_bound(submap.landmarks.begin(), submap.landmarks.end(), id,
-                                      [](const MixtureLandmark& landmark, LandmarkId i) { return landmark.id < i; });
-  return found == submap.landmarks.end() || found->id != id ? nullptr : &*found;
-}
-
-/// Most entries are what the newest submap says of the landmark.
-void SubmapArchive::transferEntries(StateArchive& archive) {
-  const std::size_t count = archive.count(landmarks_.size());
-  auto next = landmarks_.begin();
+/// Most landmarks are what the newest submap says of them.
+void SubmapArchive::transferLandmarks(StateArchive& archive) {
+  const std::size_t count = archive.count(submap_of_.size());
+  auto next = submap_of_.begin();
   LandmarkId previous = 0;
   for (std::size_t i = 0; i < count; ++i) {
     LandmarkId step = archive.isReading() ? 0 : next->first - previous;
-    archive(step);
+    int submap = archive.isReading() ? 0 : (next++)->second;
+    archive(step, submap);
     const LandmarkId id = previous += step;
-    Entry& entry = archive.isReading() ? landmarks_[id] : (next++)->second;
-    archive(entry.submap);
-    if (entry.submap < 0 || entry.submap >= static_cast<int>(submaps_.size())) {
+    if (submap < 0 || submap >= static_cast<int>(submaps_.size())) {
       StateArchive::fail("a landmark of a submap that is not there");
     }
-    const MixtureLandmark* known = findLandmark(*submaps_[static_cast<std::size_t>(entry.submap)], id);
-    bool is_known = known != nullptr && bytesOf(*known) == bytesOf(entry.landmark);
+    MixtureLandmark landmark;
+    if (!archive.isReading()) landmark = *find(id);
+    const MixtureLandmark* known = findLandmark(id, submaps_[static_cast<std::size_t>(submap)]->landmarks);
+    bool is_known = known != nullptr && bytesOf(*known) == bytesOf(landmark);
     archive(is_known);
     if (!is_known) {
-      archive(entry.landmark);
+      archive(landmark);
     } else if (archive.isReading()) {
       if (known == nullptr) StateArchive::fail("a landmark that its submap lacks");
-      entry.landmark = *known;
+      landmark = *known;
     }
+    if (!archive.isReading()) continue;
+    landmark.id = id;
+    place(submap, std::move(landmark));
   }
 }
 
@@ -55,9 +51,11 @@ void SubmapArchive::transfer(StateArchive& archive) {
   archive(submaps);
   if (archive.isReading()) {
     submaps_.clear();
+    submap_of_.clear();
     for (Submap& submap : submaps) submaps_.push_back(std::make_shared<const Submap>(std::move(submap)));
+    lasting_.assign(submaps_.size(), {});
   }
-  transferEntries(archive);
+  transferLandmarks(archive);
   archive(merged_ids_);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/common/state_archive.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -74,6 +76,46 @@ TEST(SubmapArchiveTest, LandmarksOfALoopBecomeOneAndLaterSubmapsFollow) {
   for (const DetectionAssociation& association : archive.associations()) EXPECT_EQ(association.landmark, 1U);
   archive.merge(5, 1);
   EXPECT_EQ(archive.resolve(5), 1U) << "merging twice is no circle";
+}
+
+std::vector<LandmarkId> idsOf(const SubmapArchive& archive, int submap) {
+  std::vector<LandmarkId> ids;
+  archive.forEachLandmarkOf(submap, [&](const MixtureLandmark& landmark) { ids.push_back(landmark.id); });
+  return ids;
+}
+
+TEST(SubmapArchiveTest, ALandmarkBelongsToTheSubmapThatSawItLast) {
+  SubmapArchive archive(0.5);
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(1, 40.0, 0.9), makeLandmark(2, -7.0, 0.9)}, {}, {}));
+  EXPECT_EQ(idsOf(archive, 0), (std::vector<LandmarkId>{1, 2}));
+  EXPECT_EQ(archive.reach_m(0), 40.0);
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(1, 5.0, 0.9), makeLandmark(6, 3.0, 0.2)}, {}, {}));
+  EXPECT_EQ(idsOf(archive, 0), std::vector<LandmarkId>{2});
+  EXPECT_EQ(idsOf(archive, 1), std::vector<LandmarkId>{1}) << "6 is not part of the map";
+  archive.merge(2, 9);  // a survivor that no submap has
+  EXPECT_EQ(idsOf(archive, 0), std::vector<LandmarkId>{9});
+  archive.merge(9, 1);
+  EXPECT_TRUE(idsOf(archive, 0).empty());
+  EXPECT_EQ(idsOf(archive, 1), std::vector<LandmarkId>{1});
+  ASSERT_EQ(landmarksOf(archive).size(), 1U);
+}
+
+TEST(SubmapArchiveTest, WrittenAndReadItHasTheSameLandmarksInTheSameSubmaps) {
+  SubmapArchive archive(0.5);
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(1, 4.0, 0.9), makeLandmark(2, -7.0, 0.9)}, {}, {}));
+  archive.add(makeSubmap(Pose::identity(), {makeLandmark(1, 5.0, 0.9), makeLandmark(3, 1.0, 0.7)}, {}, {}));
+  archive.merge(3, 2);
+  StateArchive writing;
+  archive.transfer(writing);
+  SubmapArchive other(0.5);
+  other.add(makeSubmap(Pose::identity(), {makeLandmark(8, 4.0, 0.9)}, {}, {}));  // all of it goes
+  StateArchive reading(writing.written());
+  other.transfer(reading);
+  for (const int submap : {0, 1}) EXPECT_EQ(idsOf(other, submap), idsOf(archive, submap));
+  EXPECT_EQ(other.reach_m(1), 5.0);
+  ASSERT_EQ(landmarksOf(other).size(), 2U);
+  EXPECT_EQ(landmarksOf(other)[1].observations, landmarksOf(archive)[1].observations);
+  EXPECT_EQ(other.resolve(3), 2U);
 }
 
 TEST(SubmapArchiveTest, DetectionsOfUnlikelyLandmarksAreFalsePositives) {

@@ -42,6 +42,12 @@ struct MixtureLandmark {
   bool isUndecided() const { return components.size() > 1; }
 };
 
+/// Where the landmark with an id stands in a list by rising id, or would stand.
+std::vector<MixtureLandmark>::const_iterator placeOf(LandmarkId id, const std::vector<MixtureLandmark>& landmarks);
+
+/// The landmark with an id in a list by rising id; null if the list lacks it.
+const MixtureLandmark* findLandmark(LandmarkId id, const std::vector<MixtureLandmark>& landmarks);
+
 /// Mean and covariance of a mixture. Throws std::invalid_argument for an empty one.
 Gaussian3 moments(const std::vector<MixtureComponent>& components);
 

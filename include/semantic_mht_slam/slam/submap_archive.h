@@ -29,11 +29,14 @@ class SubmapArchive {
   /// has it and in its frame.
   void forEachLandmark(const std::function<void(int submap, const MixtureLandmark& landmark)>& visit) const;
 
+  /// The same for the landmarks that one submap saw last.
+  void forEachLandmarkOf(int submap, const std::function<void(const MixtureLandmark& landmark)>& visit) const;
+
+  /// Distance from a submap's origin within which it has all landmarks that it saw last.
+  double reach_m(int submap) const { return lasting_[static_cast<std::size_t>(submap)].reach_m; }
+
   /// The ids that were merged into each landmark that took others in.
   std::map<LandmarkId, std::vector<LandmarkId>> mergedInto() const;
-
-  /// A landmark of a submap as the submap has it, by the id that it had then; null if the submap lacks it.
-  static const MixtureLandmark* findLandmark(const Submap& submap, LandmarkId id);
 
   /// The landmark that an id stands for now: itself, or the one that it was merged into.
   LandmarkId resolve(LandmarkId id) const { return merged_ids_.resolve(id); }
@@ -46,19 +49,24 @@ class SubmapArchive {
   void transfer(StateArchive& archive);
 
  private:
-  struct Entry {
-    int submap = 0;  ///< index in `submaps_`
-    MixtureLandmark landmark;
+  /// What a submap is the last to have seen.
+  struct Lasting {
+    std::vector<MixtureLandmark> landmarks;  ///< by rising id
+    double reach_m = 0.0;                    ///< does not shrink when landmarks go
   };
 
-  void transferEntries(StateArchive& archive);
-
-  bool isKept(const Entry& entry) const { return entry.landmark.existence_prob >= keep_prob_; }
+  void transferLandmarks(StateArchive& archive);
+  const MixtureLandmark* find(LandmarkId id) const;
+  MixtureLandmark* find(LandmarkId id);
+  void place(int submap, MixtureLandmark landmark);
+  void remove(LandmarkId id);
+  bool isKept(const MixtureLandmark& landmark) const { return landmark.existence_prob >= keep_prob_; }
   bool isKept(LandmarkId id) const;
 
   double keep_prob_;
   std::vector<std::shared_ptr<const Submap>> submaps_;
-  std::map<LandmarkId, Entry> landmarks_;
+  std::vector<Lasting> lasting_;         ///< of each submap
+  std::map<LandmarkId, int> submap_of_;  ///< that saw a landmark last: index in `submaps_`
   MergedIds merged_ids_;
 };
 
