@@ -18,23 +18,25 @@ namespace {
 constexpr double kLogTwoPi = 1.8378770664093453;
 constexpr double kImpossible = -std::numeric_limits<double>::infinity();
 
-void require(bool is_fulfilled, const std::string& problem) {
-  if (!is_fulfilled) throw std::invalid_argument("alignJointly: " + problem);
-}
-
-void check(const std::vector<AlignmentPoint>& points, const std::string& kind, const ClassTable& classes) {
+void check(const std::vector<AlignmentPoint>& points, const char* kind, const ClassTable& classes) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::string name = kind + " " + std::to_string(i);
-    require(points[i].position_m.allFinite(), name + " is not finite");
-    require(isCovariance(points[i].cov_m2), name + " has no positive definite covariance");
-    require(points[i].class_index >= 0 && points[i].class_index < classes.size(), name + " has an unknown class");
+    const char* problem = nullptr;
+    if (!points[i].position_m.allFinite())
+      problem = " is not finite";
+    else if (!isCovariance(points[i].cov_m2))
+      problem = " has no positive definite covariance";
+    else if (points[i].class_index < 0 || points[i].class_index >= classes.size())
+      problem = " has an unknown class";
+    if (problem == nullptr) continue;
+    throw std::invalid_argument(std::string("alignJointly: ") + kind + " " + std::to_string(i) + problem);
   }
 }
 
 void check(const AlignmentPrior& prior) {
-  require(prior.T_a_b.isValid(), "the prior is no pose");
+  if (!prior.T_a_b.isValid()) throw std::invalid_argument("alignJointly: the prior is no pose");
   for (const double stddev : {prior.stddev_xy_m, prior.stddev_z_m, prior.stddev_yaw_rad}) {
-    require(std::isfinite(stddev) && stddev > 0.0, "the prior has a deviation that is not positive");
+    if (std::isfinite(stddev) && stddev > 0.0) continue;
+    throw std::invalid_argument("alignJointly: the prior has a deviation that is not positive");
   }
 }
 
@@ -73,8 +75,8 @@ std::vector<double> classDensities(const AlignmentProblem& problem, int class_co
     ++detections[detection.class_index];
     for (const LevelledPoint& landmark : problem.landmarks) {
       if (landmark.class_index != detection.class_index) continue;
-      const double distance_m = (landmark.position_m - detection.position_m).head<2>().norm();
-      if (distance_m < config.density_radius_m) ++neighbours[detection.class_index];
+      const double distance_sq = (landmark.position_m - detection.position_m).head<2>().squaredNorm();
+      if (distance_sq < config.density_radius_m * config.density_radius_m) ++neighbours[detection.class_index];
     }
   }
   const double volume_m3 = M_PI * config.density_radius_m * config.density_radius_m * config.density_height_m;
@@ -102,7 +104,7 @@ std::vector<std::vector<double>> logClassProbs(const ClassTable& classes, double
 
 bool hasLandmarkAround(const AlignmentProblem& problem, const LevelledPoint& detection, double radius_m) {
   return std::any_of(problem.landmarks.begin(), problem.landmarks.end(), [&](const LevelledPoint& landmark) {
-    return (landmark.position_m - detection.position_m).head<2>().norm() < radius_m;
+    return (landmark.position_m - detection.position_m).head<2>().squaredNorm() < radius_m * radius_m;
   });
 }
 
@@ -131,24 +133,57 @@ double reach(const LevelledPoint& detection, const AlignmentCandidate& candidate
                    (largestHorizontalVariance(detection.cov_m2) + largestHorizontalVariance(candidate.cov_m2)));
 }
 
-/// Whether some offset inside the window brings detection and landmark within reach.
-bool isInWindow(const LevelledPoint& detection, const LevelledPoint& landmark, double reach_m,
-                const Eigen::Vector4d& window) {
-  const Eigen::Vector3d gap_m = landmark.position_m - detection.position_m;
+/// What bounds the reach of all matches: most pairs are too far apart for any.
+struct ReachBound {
+  double least_det = std::numeric_limits<double>::infinity();  ///< of the landmarks' covariances
+  double largest_variance_m2 = 0.0;                            ///< of theirs, horizontal
+};
+
+/// At range 0: the range adds to the vertical variance alone, which makes determinants larger.
+ReachBound reachBound(const std::vector<LevelledPoint>& landmarks, const ClassTable& classes,
+                      const JointAlignmentConfig& config) {
+  ReachBound bound;
+  for (const LevelledPoint& landmark : landmarks) {
+    const Eigen::Matrix3d cov_m2 = landmark.cov_m2 + extraCov(classes[landmark.class_index], 0.0, config);
+    bound.least_det = std::min(bound.least_det, cov_m2.determinant());
+    bound.largest_variance_m2 = std::max(bound.largest_variance_m2, largestHorizontalVariance(cov_m2));
+  }
+  return bound;
+}
+
+/// As `reach`, for the landmark that reaches farthest.
+double reach(const LevelledPoint& detection, double log_odds, const ReachBound& bound) {
+  const double det = detection.cov_m2.determinant() + bound.least_det;
+  const double log_peak_odds = log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(det));
+  if (log_peak_odds <= 0.0) return -1.0;
+  return std::sqrt(2.0 * log_peak_odds * (largestHorizontalVariance(detection.cov_m2) + bound.largest_variance_m2));
+}
+
+/// Largest gaps that offsets inside the window can close for a detection.
+Eigen::Vector3d closable(const LevelledPoint& detection, const Eigen::Vector4d& window) {
   const double turn_m = window(3) * detection.position_m.head<2>().norm();
-  return std::abs(gap_m.x()) < window(0) + turn_m + reach_m && std::abs(gap_m.y()) < window(1) + turn_m + reach_m &&
-         std::abs(gap_m.z()) < window(2) + reach_m;
+  return window.head<3>() + Eigen::Vector3d(turn_m, turn_m, 0.0);
+}
+
+bool isWithin(const Eigen::Vector3d& gap_m, const Eigen::Vector3d& closable_m, double reach_m) {
+  return std::abs(gap_m.x()) < closable_m.x() + reach_m && std::abs(gap_m.y()) < closable_m.y() + reach_m &&
+         std::abs(gap_m.z()) < closable_m.z() + reach_m;
 }
 
 /// Landmarks that a detection may be; `log_odds` is what holds for all of them.
 std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem, const LevelledPoint& detection,
                                                const ClassTable& classes, const JointAlignmentConfig& config,
-                                               double log_odds,
+                                               double log_odds, const ReachBound& bound,
                                                const std::vector<std::vector<double>>& log_class_probs) {
   const double range_m = detection.position_m.head<2>().norm();
+  const double farthest_m = reach(detection, log_odds, bound);
+  const Eigen::Vector3d closable_m = closable(detection, problem.window);
   std::vector<AlignmentCandidate> candidates;
+  if (farthest_m <= 0.0) return candidates;
   for (std::size_t l = 0; l < problem.landmarks.size(); ++l) {
     const LevelledPoint& landmark = problem.landmarks[l];
+    const Eigen::Vector3d gap_m = landmark.position_m - detection.position_m;
+    if (!isWithin(gap_m, closable_m, farthest_m)) continue;
     const double log_class_prob = log_class_probs[landmark.class_index][detection.class_index];
     if (log_class_prob == kImpossible) continue;
     AlignmentCandidate candidate;
@@ -157,8 +192,7 @@ std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem, 
     candidate.log_odds = log_odds + log_class_prob;
     candidate.cov_m2 = landmark.cov_m2 + extraCov(classes[landmark.class_index], range_m, config);
     candidate.reach_m = reach(detection, candidate);
-    if (candidate.reach_m <= 0.0 || !isInWindow(detection, landmark, candidate.reach_m, problem.window)) continue;
-    candidates.push_back(candidate);
+    if (candidate.reach_m > 0.0 && isWithin(gap_m, closable_m, candidate.reach_m)) candidates.push_back(candidate);
   }
   return candidates;
 }
@@ -188,11 +222,12 @@ AlignmentProblem makeAlignmentProblem(const std::vector<AlignmentPoint>& detecti
 
   const std::vector<double> densities = classDensities(problem, classes.size(), config);
   const std::vector<std::vector<double>> log_class_probs = logClassProbs(classes, config.confusion_prob);
+  const ReachBound bound = reachBound(problem.landmarks, classes, config);
   for (const LevelledPoint& detection : problem.detections) {
     const ClassInfo& info = classes[detection.class_index];
     const double match_prob = info.is_static ? config.static_match_prob : config.movable_match_prob;
     const double log_odds = std::log(match_prob / (1.0 - match_prob)) - std::log(densities[detection.class_index]);
-    problem.candidates.push_back(findCandidates(problem, detection, classes, config, log_odds, log_class_probs));
+    problem.candidates.push_back(findCandidates(problem, detection, classes, config, log_odds, bound, log_class_probs));
     problem.is_static.push_back(info.is_static);
     problem.is_covered.push_back(hasLandmarkAround(problem, detection, config.density_radius_m));
   }

@@ -21,127 +21,194 @@ struct Vote {
   double radius_cells = 0.0;
 };
 
-/// Scores over heading, y, x. Each layer has a border of `kMargin` cells, in which no peaks are looked for: a peak has
-/// neighbours on all sides.
+/// A cell whose score no neighbour's exceeds.
+struct Peak {
+  double score = 0.0;
+  std::size_t cell = 0;  ///< counted over all layers
+  AlignmentState state = AlignmentState::Zero();
+};
+
+/// The highest peaks; of equal ones the first cells.
+class HighestPeaks {
+ public:
+  explicit HighestPeaks(std::size_t count) : count_(count) {}
+
+  /// Votes of a cell that no peak of so few votes could be kept any more.
+  std::int32_t leastVotes() const { return least_votes_; }
+
+  void add(const Peak& peak) {
+    peaks_.push_back(peak);
+    std::push_heap(peaks_.begin(), peaks_.end(), isHigher);
+    if (peaks_.size() > count_) {
+      std::pop_heap(peaks_.begin(), peaks_.end(), isHigher);
+      peaks_.pop_back();
+    }
+    if (peaks_.size() == count_) {
+      least_votes_ = std::max(0, static_cast<std::int32_t>(std::floor(peaks_.front().score * kVotesPerNat)));
+    }
+  }
+
+  /// By falling score.
+  std::vector<AlignmentState> states() const {
+    std::vector<Peak> sorted = peaks_;
+    std::sort_heap(sorted.begin(), sorted.end(), isHigher);
+    std::vector<AlignmentState> states;
+    for (const Peak& peak : sorted) states.push_back(peak.state);
+    return states;
+  }
+
+ private:
+  static bool isHigher(const Peak& a, const Peak& b) {
+    return a.score != b.score ? a.score > b.score : a.cell < b.cell;
+  }
+
+  std::size_t count_;
+  std::vector<Peak> peaks_;  ///< a heap, the lowest in front
+  std::int32_t least_votes_ = 0;
+};
+
+/// Scores over heading, y, x, of which three layers of one heading each are kept: as many as a peak has neighbours in.
+/// Each layer has a border of `kMargin` cells, in which no peaks are looked for.
 class VoteGrid {
  public:
-  VoteGrid(const Eigen::Vector4d& window, const JointAlignmentConfig& config)
-      : cell_m_(config.cell_m),
+  VoteGrid(const AlignmentProblem& problem, const std::vector<Vote>& votes, const JointAlignmentConfig& config)
+      : problem_(problem),
+        votes_(votes),
+        cell_m_(config.cell_m),
         yaw_step_rad_(config.yaw_step_rad),
-        half_side_(static_cast<int>(std::ceil(window(0) / config.cell_m))),
-        half_turns_(static_cast<int>(std::ceil(window(3) / config.yaw_step_rad))),
+        half_side_(static_cast<int>(std::ceil(problem.window(0) / config.cell_m))),
+        half_turns_(static_cast<int>(std::ceil(problem.window(3) / config.yaw_step_rad))),
         side_(2 * (half_side_ + kMargin) + 1),
-        scores_(static_cast<std::size_t>(2 * half_turns_ + 1) * side_ * side_, 0),
-        best_of_detection_(static_cast<std::size_t>(side_) * side_, {-1, 0}) {}
+        best_voter_(static_cast<std::size_t>(side_) * side_, -1),
+        best_score_(static_cast<std::size_t>(side_) * side_, 0) {}
 
-  void add(const AlignmentProblem& problem, const std::vector<Vote>& votes);
-  std::vector<AlignmentState> peaks(const Eigen::Vector4d& prior_stddev, int count) const;
+  HighestPeaks highestPeaks(std::size_t count) {
+    HighestPeaks peaks(count);
+    for (int layer = 0; layer <= 2 * half_turns_; ++layer) {
+      vote(layer);
+      if (layer > 0) findPeaks(layer - 1, peaks);
+    }
+    findPeaks(2 * half_turns_, peaks);
+    return peaks;
+  }
 
  private:
   static constexpr int kMargin = 1;
-
-  /// The best vote of the detection that voted last in a cell, which a better one replaces.
-  struct CellVote {
-    std::int32_t voter = -1;
-    std::int32_t score = 0;
-  };
-  struct Peak {
-    double score = 0.0;
-    std::size_t cell = 0;
-    AlignmentState state = AlignmentState::Zero();
-  };
+  static constexpr int kStretch = 16;
 
   double yaw(int layer) const { return (layer - half_turns_) * yaw_step_rad_; }
-  std::size_t cellOf(int layer, int y, int x) const {
-    return (static_cast<std::size_t>(layer) * side_ + y) * side_ + x;
-  }
-  void addVote(const Vote& vote, int layer, int voter, const Eigen::Vector2d& offset_m);
-  bool isPeak(int layer, int y, int x) const;
+  std::size_t cellOf(int y, int x) const { return static_cast<std::size_t>(y) * side_ + x; }
+  std::vector<std::int32_t>& scores(int layer) { return scores_[static_cast<std::size_t>(layer) % scores_.size()]; }
 
+  void vote(int layer);
+  void addVote(const Vote& vote, int voter, const Eigen::Vector2d& offset_m, std::vector<std::int32_t>& scores);
+  static void addRow(float at_row, float scale, float first_dx, int count, std::int32_t voter,
+                     std::int32_t* __restrict best_voter, std::int32_t* __restrict best_score,
+                     std::int32_t* __restrict total);
+  void findPeaks(int layer, HighestPeaks& peaks);
+  void findPeaks(int layer, int y, int begin, int end, HighestPeaks& peaks);
+  bool isPeak(int layer, int y, int x);
+
+  const AlignmentProblem& problem_;
+  const std::vector<Vote>& votes_;
   double cell_m_;
   double yaw_step_rad_;
   int half_side_;
   int half_turns_;
   int side_;
-  std::vector<std::int32_t> scores_;
-  std::vector<CellVote> best_of_detection_;
+  std::array<std::vector<std::int32_t>, 3> scores_;
+  // Of each cell of a layer: the detection that voted last, and its best vote, which a better one replaces.
+  std::vector<std::int32_t> best_voter_;
+  std::vector<std::int32_t> best_score_;
 };
 
-void VoteGrid::addVote(const Vote& vote, int layer, int voter, const Eigen::Vector2d& offset_m) {
+void VoteGrid::addVote(const Vote& vote, int voter, const Eigen::Vector2d& offset_m,
+                       std::vector<std::int32_t>& scores) {
   const Eigen::Vector2d center = offset_m / cell_m_ + Eigen::Vector2d::Constant(half_side_ + kMargin);
   const double radius = vote.radius_cells;
   const double scale = vote.half_information * cell_m_ * cell_m_ * kVotesPerNat;
   const int y_end = std::min(side_ - 1, static_cast<int>(std::floor(center.y() + radius)));
   const int x_begin = std::max(0, static_cast<int>(std::ceil(center.x() - radius)));
   const int x_end = std::min(side_ - 1, static_cast<int>(std::floor(center.x() + radius)));
+  if (x_begin > x_end) return;
   for (int y = std::max(0, static_cast<int>(std::ceil(center.y() - radius))); y <= y_end; ++y) {
     const double dy = y - center.y();
     const double at_row = vote.log_peak_odds * kVotesPerNat - scale * dy * dy;
-    CellVote* best = best_of_detection_.data() + cellOf(0, y, 0);
-    std::int32_t* total = scores_.data() + cellOf(layer, y, 0);
-    for (int x = x_begin; x <= x_end; ++x) {
-      const double dx = x - center.x();
-      const auto score = static_cast<std::int32_t>(at_row - scale * dx * dx);
-      const std::int32_t before = best[x].voter == voter ? best[x].score : 0;
-      if (score <= before) continue;
-      total[x] += score - before;
-      best[x] = {voter, score};
-    }
+    const std::size_t first = cellOf(y, x_begin);
+    addRow(static_cast<float>(at_row), static_cast<float>(scale), static_cast<float>(x_begin - center.x()),
+           x_end - x_begin + 1, voter, &best_voter_[first], &best_score_[first], &scores[first]);
   }
 }
 
-void VoteGrid::add(const AlignmentProblem& problem, const std::vector<Vote>& votes) {
-  const int detections = static_cast<int>(problem.detections.size());
-  for (int layer = 0; layer <= 2 * half_turns_; ++layer) {
-    const Eigen::Matrix2d rotation = headingRotation(yaw(layer)).topLeftCorner<2, 2>();
-    int detection = -1;
-    Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
-    for (const Vote& vote : votes) {
-      if (vote.detection != detection) {
-        detection = vote.detection;
-        position_m = rotation * problem.detections[detection].position_m.head<2>();
-      }
-      addVote(vote, layer, layer * detections + detection, vote.landmark_m - position_m);
+/// Without branches, so that compilers can work on several cells at once.
+void VoteGrid::addRow(float at_row, float scale, float first_dx, int count, std::int32_t voter,
+                      std::int32_t* __restrict best_voter, std::int32_t* __restrict best_score,
+                      std::int32_t* __restrict total) {
+  for (int x = 0; x < count; ++x) {
+    const float dx = first_dx + static_cast<float>(x);
+    const auto score = static_cast<std::int32_t>(at_row - scale * dx * dx);
+    const std::int32_t before = best_voter[x] == voter ? best_score[x] : 0;
+    const std::int32_t after = score > before ? score : before;
+    total[x] += after - before;
+    best_voter[x] = voter;
+    best_score[x] = after;
+  }
+}
+
+void VoteGrid::vote(int layer) {
+  std::vector<std::int32_t>& layer_scores = scores(layer);
+  layer_scores.assign(best_score_.size(), 0);
+  const int detections = static_cast<int>(problem_.detections.size());
+  const Eigen::Matrix2d rotation = headingRotation(yaw(layer)).topLeftCorner<2, 2>();
+  int detection = -1;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  for (const Vote& vote : votes_) {
+    if (vote.detection != detection) {
+      detection = vote.detection;
+      position_m = rotation * problem_.detections[detection].position_m.head<2>();
     }
+    addVote(vote, layer * detections + detection, vote.landmark_m - position_m, layer_scores);
   }
 }
 
 /// Highest of its neighbours; among equal ones the first.
-bool VoteGrid::isPeak(int layer, int y, int x) const {
-  const std::size_t cell = cellOf(layer, y, x);
+bool VoteGrid::isPeak(int layer, int y, int x) {
+  const std::int32_t score = scores(layer)[cellOf(y, x)];
   for (int dl = -1; dl <= 1; ++dl) {
     if (layer + dl < 0 || layer + dl > 2 * half_turns_) continue;
+    const std::vector<std::int32_t>& others = scores(layer + dl);
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        const std::size_t other = cellOf(layer + dl, y + dy, x + dx);
-        if (scores_[other] > scores_[cell] || (scores_[other] == scores_[cell] && other < cell)) return false;
+        const bool is_before = dl != 0 ? dl < 0 : dy != 0 ? dy < 0 : dx < 0;
+        const std::int32_t other = others[cellOf(y + dy, x + dx)];
+        if (other > score || (other == score && is_before)) return false;
       }
     }
   }
   return true;
 }
 
-std::vector<AlignmentState> VoteGrid::peaks(const Eigen::Vector4d& prior_stddev, int count) const {
-  std::vector<Peak> peaks;
-  for (int layer = 0; layer <= 2 * half_turns_; ++layer) {
-    for (int y = kMargin; y < side_ - kMargin; ++y) {
-      for (int x = kMargin; x < side_ - kMargin; ++x) {
-        const std::size_t cell = cellOf(layer, y, x);
-        if (scores_[cell] <= 0 || !isPeak(layer, y, x)) continue;
-        const int center = half_side_ + kMargin;
-        const AlignmentState state((x - center) * cell_m_, (y - center) * cell_m_, 0.0, yaw(layer));
-        const double log_prior = -0.5 * state.cwiseQuotient(prior_stddev).squaredNorm();
-        peaks.push_back({scores_[cell] / kVotesPerNat + log_prior, cell, state});
-      }
-    }
+void VoteGrid::findPeaks(int layer, HighestPeaks& peaks) {
+  const int end = side_ - kMargin;
+  for (int y = kMargin; y < end; ++y) {
+    for (int x = kMargin; x < end; x += kStretch) findPeaks(layer, y, x, std::min(end, x + kStretch), peaks);
   }
-  const std::size_t kept = std::min<std::size_t>(peaks.size(), count);
-  std::partial_sort(peaks.begin(), peaks.begin() + kept, peaks.end(), [](const Peak& a, const Peak& b) {
-    return a.score != b.score ? a.score > b.score : a.cell < b.cell;
-  });
-  std::vector<AlignmentState> states;
-  for (std::size_t i = 0; i < kept; ++i) states.push_back(peaks[i].state);
-  return states;
+}
+
+/// Of a stretch of a row. Most stretches have nothing that is high enough.
+void VoteGrid::findPeaks(int layer, int y, int begin, int end, HighestPeaks& peaks) {
+  const std::int32_t* row = &scores(layer)[cellOf(y, 0)];
+  const std::int32_t least = peaks.leastVotes();
+  std::int32_t missing = 0;  // negative if some cell has more votes
+  for (int x = begin; x < end; ++x) missing |= least - row[x];
+  if (missing >= 0) return;
+  const int center = half_side_ + kMargin;
+  for (int x = begin; x < end; ++x) {
+    if (row[x] <= peaks.leastVotes() || !isPeak(layer, y, x)) continue;
+    const AlignmentState state((x - center) * cell_m_, (y - center) * cell_m_, 0.0, yaw(layer));
+    const double log_prior = -0.5 * state.cwiseQuotient(problem_.prior_stddev).squaredNorm();
+    peaks.add({row[x] / kVotesPerNat + log_prior, layer * best_score_.size() + cellOf(y, x), state});
+  }
 }
 
 /// The odds in the plane: the height is averaged over its prior, the grid adds its own coarseness.
@@ -179,9 +246,7 @@ std::vector<AlignmentState> alignmentSeeds(const AlignmentProblem& problem, cons
     }
   }
   if (votes.empty()) return {};
-  VoteGrid grid(problem.window, config);
-  grid.add(problem, votes);
-  return grid.peaks(problem.prior_stddev, config.max_seeds);
+  return VoteGrid(problem, votes, config).highestPeaks(static_cast<std::size_t>(config.max_seeds)).states();
 }
 
 }  // namespace semantic_mht_slam
