@@ -134,7 +134,18 @@ class StretchEquations {
   void addLandmark(const std::vector<Row>& rows, BiasInformation& all) const {
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(size_, 3);
+    std::vector<int> used;  // unknowns, without the many that it has nothing to do with
+    std::vector<int> place(static_cast<std::size_t>(size_), -1);  // of each unknown in `used`
+    for (const Row& row : rows) {
+      for (const int index : row.index) {
+        int& known = place[static_cast<std::size_t>(index)];
+        if (known >= 0) continue;
+        known = static_cast<int>(used.size());
+        used.push_back(index);
+      }
+    }
+    const auto count = static_cast<Eigen::Index>(used.size());
+    Eigen::Matrix<double, Eigen::Dynamic, 3> cross = Eigen::MatrixXd::Zero(count, 3);
     const Eigen::Vector3d origin_m = rows.front().point_m;  // keeps the numbers small
     for (const Row& row : rows) {
       const Eigen::Matrix3d W = row.weight * row.information;
@@ -143,17 +154,19 @@ class StretchEquations {
       const Eigen::Vector3d d = row.point_m - origin_m;
       const Eigen::Matrix<double, kEntries, 1> JtWd = JtW * d;
       for (int a = 0; a < kEntries; ++a) {
-        cross.row(row.index[a]) += JtW.row(a);
+        cross.row(place[static_cast<std::size_t>(row.index[a])]) += JtW.row(a);
         all.vector[row.index[a]] -= JtWd[a];
         for (int b = 0; b < kEntries; ++b) all.matrix(row.index[a], row.index[b]) += JtWJ(a, b);
       }
       total += W;
       sum += W * d;
     }
-    const Eigen::Matrix3d inverse = total.inverse();
-    const Eigen::MatrixXd weighted = cross * inverse;
-    all.matrix.noalias() -= weighted * cross.transpose();
-    all.vector += weighted * sum;
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> weighted = cross * total.inverse();
+    const Eigen::MatrixXd eliminated = weighted.lazyProduct(cross.transpose());
+    for (Eigen::Index b = 0; b < count; ++b) {
+      for (Eigen::Index a = 0; a < count; ++a) all.matrix(used[a], used[b]) -= eliminated(a, b);
+      all.vector[used[b]] += weighted.row(b).dot(sum);
+    }
   }
 
   /// Random walk of the pose's error; scale, direction and slope act on every step.

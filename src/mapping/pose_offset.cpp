@@ -27,8 +27,10 @@ Pose corrected(const Pose& T_submap_base, const PoseOffset& offset) {
 }
 
 Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_m) {
-  const Jacobian J = jacobian(lever_m);
-  return J * offset.cov * J.transpose();
+  // J cov J^T by the blocks of J = [I, turn]: this is done for every detection in every hypothesis.
+  const Eigen::Vector3d turn(-lever_m.y(), lever_m.x(), 0.0);
+  const Eigen::Matrix3d cross = offset.cov.topRightCorner<3, 1>() * turn.transpose();
+  return offset.cov.topLeftCorner<3, 3>() + cross + cross.transpose() + offset.cov(3, 3) * turn * turn.transpose();
 }
 
 PoseOffset grown(const PoseOffset& offset, double distance_m, double stddev_m, double stddev_rad) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
@@ -70,6 +71,18 @@ TEST(PoseOffsetTest, HeadingErrorsMovePointsAcrossTheLever) {
   EXPECT_LT(
       (corrected(Pose::identity(), offset) * Eigen::Vector3d(1.0, 0.0, 0.0) - Eigen::Vector3d(1.0, 1.0, 0.0)).norm(),
       1e-12);
+}
+
+TEST(PoseOffsetTest, PointsAreAsUncertainAsTheWholeOffsetMakesThem) {
+  Rng rng(3);
+  PoseOffset offset;
+  const Eigen::Matrix4d root = Eigen::Matrix4d::NullaryExpr([&] { return rng.normal(); });
+  offset.cov = root * root.transpose();
+  const Eigen::Vector3d lever_m(3.0, -7.0, 2.0);
+  Eigen::Matrix<double, 3, 4> J = Eigen::Matrix<double, 3, 4>::Zero();
+  J.leftCols<3>().setIdentity();
+  J.col(3) = Eigen::Vector3d::UnitZ().cross(lever_m);
+  EXPECT_TRUE(pointCov(offset, lever_m).isApprox(J * offset.cov * J.transpose(), 1e-12));
 }
 
 }  // namespace
