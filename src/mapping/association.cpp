@@ -1,6 +1,8 @@
 #include "semantic_mht_slam/mapping/association.h"
 
 #include <algorithm>
+#include <array>
+#include <bitset>
 #include <cmath>
 #include <stdexcept>
 
@@ -47,6 +49,8 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
       confusion_(classes.size(), wrongClassProb(config.association), config.association.confusion_samples),
       log_uniform_density_(-std::log(config.association.map_volume_m3) - std::log(static_cast<double>(class_count_))),
       log_false_positives_(std::log(config.association.false_positive_density)),
+      log_inlier_prob_(std::log1p(-config.association.outlier_prob)),
+      log_outlier_prob_(std::log(config.association.outlier_prob)),
       gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
   if (class_count_ > kMaxClasses) throw std::invalid_argument("more classes than a landmark can hold");
   for (const ClassInfo& info : classes.all()) {
@@ -91,25 +95,33 @@ double AssociationModel::logCountPrior(int observations) const {
 }
 
 bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
-                                       const Eigen::Vector3d& d, Candidate& candidate, double& log_density) const {
+                                       const Eigen::Vector3d& d, Candidate& candidate) const {
+  const bool has_outliers = config_.association.outlier_prob > 0.0;
+  std::optional<GaussianEvaluation> wide;
+  if (has_outliers || config_.association.split_prob > 0.0) {
+    Eigen::Matrix3d wide_cov = cov;
+    wide_cov.diagonal() += outlier_variance_m2;
+    wide = evaluate({Eigen::Vector3d::Zero(), wide_cov}, d);
+    if (!wide || (has_outliers && wide->mahalanobis_sq > gate_mahalanobis_sq_)) return false;
+    candidate.log_part_likelihood = wide->log_density;
+  }
   const auto narrow = evaluate({Eigen::Vector3d::Zero(), cov}, d);
-  if (!narrow) return false;
-  candidate.mahalanobis_sq = narrow->mahalanobis_sq;
-  log_density = narrow->log_density;
-  const double outlier_prob = config_.association.outlier_prob;
-  if (outlier_prob == 0.0 && config_.association.split_prob == 0.0) return true;
-  Eigen::Matrix3d wide_cov = cov;
-  wide_cov.diagonal() += outlier_variance_m2;
-  const auto wide = evaluate({Eigen::Vector3d::Zero(), wide_cov}, d);
-  if (!wide) return false;
-  candidate.log_part_likelihood = wide->log_density;
-  if (outlier_prob == 0.0) return true;
-  const double inlier = std::log1p(-outlier_prob) + narrow->log_density;
-  const double outlier = std::log(outlier_prob) + wide->log_density;
+  if (!narrow || (!has_outliers && narrow->mahalanobis_sq > gate_mahalanobis_sq_)) return false;
+  candidate.log_likelihood = narrow->log_density;
+  if (!has_outliers) return true;
+  const double inlier = log_inlier_prob_ + narrow->log_density;
+  const double outlier = log_outlier_prob_ + wide->log_density;
   candidate.is_outlier = outlier > inlier;
-  candidate.mahalanobis_sq = wide->mahalanobis_sq;
-  log_density = std::max(inlier, outlier) + std::log1p(std::exp(-std::abs(inlier - outlier)));
+  candidate.log_likelihood = logAdd(inlier, outlier);
   return true;
+}
+
+/// By one axis alone, which no Mahalanobis distance is smaller than; most landmarks go without a factorization.
+bool AssociationModel::isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
+                                           const Eigen::Vector3d& d) const {
+  Eigen::Array3d variance_m2 = cov.diagonal();
+  if (config_.association.outlier_prob > 0.0) variance_m2 += outlier_variance_m2.array();
+  return (d.array().square() > gate_mahalanobis_sq_ * variance_m2).any();
 }
 
 void AssociationModel::collectReachable(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
@@ -124,34 +136,46 @@ void AssociationModel::collectReachable(const MapHypothesis& hypothesis, const s
     if (!reach.contains(position_m.head<2>())) continue;
     reachable.push_back({position_m.x(), position_m.y(), static_cast<int>(j)});
   }
+  std::sort(reachable.begin(), reachable.end(),
+            [](const auto& a, const auto& b) { return a.x_m != b.x_m ? a.x_m < b.x_m : a.landmark < b.landmark; });
 }
 
 void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
                                          const std::vector<AssociationProblem::Reachable>& reachable,
                                          std::vector<Candidate>& candidates) const {
   candidates.clear();
+  std::array<ObjectNoise, kMaxClasses> noise;
+  std::bitset<kMaxClasses> is_known;
+  const auto noise_of_class = [&](ClassIndex class_index) -> const ObjectNoise& {
+    const auto c = static_cast<std::size_t>(class_index);
+    if (!is_known[c]) noise[c] = noiseOfObject(detected, class_index);
+    is_known.set(c);
+    return noise[c];
+  };
   const double max_gate_m = config_.association.max_gate_m;
-  for (const auto& [x_m, y_m, j] : reachable) {
-    if (std::abs(detected.position_m.x() - x_m) > max_gate_m || std::abs(detected.position_m.y() - y_m) > max_gate_m) {
-      continue;
-    }
+  const double x_begin_m = detected.position_m.x() - max_gate_m;
+  const double x_end_m = detected.position_m.x() + max_gate_m;
+  auto next = std::lower_bound(reachable.begin(), reachable.end(), x_begin_m,
+                               [](const auto& landmark, double x_m) { return landmark.x_m < x_m; });
+  for (; next != reachable.end() && next->x_m <= x_end_m; ++next) {
+    const int j = next->landmark;
+    if (std::abs(detected.position_m.y() - next->y_m) > max_gate_m) continue;
     const TrackedLandmark& landmark = *hypothesis.landmarks[static_cast<std::size_t>(j)];
     const Eigen::Vector3d d = detected.position_m - landmark.position.mean_m;
-    const double log_class = logClassLikelihood(detected.class_index, landmark.class_probs);
-    if (!std::isfinite(log_class)) continue;
     const ClassIndex object_class = landmark.mostLikelyClass();
-    const Measurement measurement = ofObject(detected, object_class);
-    Eigen::Matrix3d cov = landmark.position.cov_m2 + measurement.cov_m2;
-    cov.diagonal().head<2>().array() += measurement.wander_variance_per_m * (driven_m - landmark.updated_at_m);
+    const ObjectNoise& own = noise_of_class(object_class);
+    Eigen::Matrix3d cov = landmark.position.cov_m2 + own.cov_m2;
+    cov.diagonal().head<2>().array() += own.wander_variance_per_m * (driven_m - landmark.updated_at_m);
     if (landmark.is_from_earlier_submap) {
       cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(object_class)];
     }
+    if (isSurelyOutsideGate(cov, own.outlier_variance_m2, d)) continue;
     Candidate candidate;
-    double log_density = 0.0;
-    if (!evaluateMixture(cov, measurement.outlier_variance_m2, d, candidate, log_density)) continue;
-    if (candidate.mahalanobis_sq > gate_mahalanobis_sq_) continue;
+    if (!evaluateMixture(cov, own.outlier_variance_m2, d, candidate)) continue;
+    const double log_class = logClassLikelihood(detected.class_index, landmark.class_probs);
+    if (!std::isfinite(log_class)) continue;
     candidate.landmark = j;
-    candidate.log_likelihood = log_density + log_class;
+    candidate.log_likelihood += log_class;
     candidate.log_part_likelihood += log_class;
     candidates.push_back(candidate);
   }
@@ -222,7 +246,7 @@ void AssociationModel::addDistanceCosts(const MapHypothesis& hypothesis, const s
       const double distance_m = (measurement.position_m - landmark.position.mean_m).norm();
       const bool same_class = !config_.semantics || landmark.mostLikelyClass() == measurement.class_index;
       if (distance_m > gate_m || !same_class) continue;
-      gated.push_back({j, 0.0, 0.0});
+      gated.push_back({j, 0.0});
       problem.costs.add(j, distance_m);
     }
     problem.costs.add(problem.landmarks + i, gate_m);  // no false positives: what has no neighbour is new

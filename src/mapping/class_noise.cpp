@@ -17,21 +17,41 @@ Eigen::Matrix3d planarAxes(const Eigen::Vector3d& ray_m) {
   return axes;
 }
 
+bool isOwnNoise(const Measurement& measurement, ClassIndex object_class) {
+  return measurement.noise_of_class == nullptr || object_class == measurement.class_index;
+}
+
+/// Along the ray in the plane, across it, upwards.
+Eigen::Vector3d varianceChange(const Measurement& measurement, const ClassNoise& object) {
+  const ClassNoise& detected = measurement.noise_of_class->at(static_cast<std::size_t>(measurement.class_index));
+  return object.stddev_m.cwiseAbs2() - detected.stddev_m.cwiseAbs2();
+}
+
 }  // namespace
 
-Measurement ofObject(const Measurement& measurement, ClassIndex object_class) {
-  if (measurement.noise_of_class == nullptr || object_class == measurement.class_index) return measurement;
-  const ClassNoise& detected = measurement.noise_of_class->at(static_cast<std::size_t>(measurement.class_index));
+ObjectNoise noiseOfObject(const Measurement& measurement, ClassIndex object_class) {
+  if (isOwnNoise(measurement, object_class)) {
+    return {measurement.cov_m2, measurement.outlier_variance_m2, measurement.wander_variance_per_m};
+  }
   const ClassNoise& object = measurement.noise_of_class->at(static_cast<std::size_t>(object_class));
-  const Eigen::Vector3d change_m2 = object.stddev_m.cwiseAbs2() - detected.stddev_m.cwiseAbs2();
   const Eigen::Matrix3d axes = measurement.R_submap_base.toRotationMatrix() * planarAxes(measurement.ray_m);
-  Measurement result = measurement;
-  result.cov_m2 += axes * change_m2.asDiagonal() * axes.transpose();
-  result.noise_stddev_m =
-      (measurement.noise_stddev_m.cwiseAbs2() + change_m2).cwiseMax(kLeastStddev_m * kLeastStddev_m).cwiseSqrt();
-  result.outlier_variance_m2.setConstant(object.outlier_variance_m2);
-  result.wander_variance_per_m = object.wander_variance_per_m;
-  return result;
+  const Eigen::Vector3d change_m2 = varianceChange(measurement, object);
+  return {measurement.cov_m2 + axes * change_m2.asDiagonal() * axes.transpose(),
+          Eigen::Vector3d::Constant(object.outlier_variance_m2), object.wander_variance_per_m};
+}
+
+const Measurement& ofObject(const Measurement& measurement, ClassIndex object_class, Measurement& changed) {
+  if (isOwnNoise(measurement, object_class)) return measurement;
+  const ClassNoise& object = measurement.noise_of_class->at(static_cast<std::size_t>(object_class));
+  const ObjectNoise noise = noiseOfObject(measurement, object_class);
+  changed = measurement;
+  changed.cov_m2 = noise.cov_m2;
+  changed.noise_stddev_m = (measurement.noise_stddev_m.cwiseAbs2() + varianceChange(measurement, object))
+                               .cwiseMax(kLeastStddev_m * kLeastStddev_m)
+                               .cwiseSqrt();
+  changed.outlier_variance_m2 = noise.outlier_variance_m2;
+  changed.wander_variance_per_m = noise.wander_variance_per_m;
+  return changed;
 }
 
 }  // namespace semantic_mht_slam

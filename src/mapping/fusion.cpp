@@ -13,7 +13,7 @@ constexpr double kSamePlaceSigmas = 0.5;
 
 struct Contribution {
   double weight;
-  const TrackedLandmark* landmark;
+  const HypothesisLandmark* landmark;
 };
 
 /// Whether two components say the same of where a landmark is: hypotheses that differ elsewhere correct the pose a
@@ -47,13 +47,13 @@ void sortByWeight(std::vector<MixtureComponent>& components) {
 std::vector<MixtureComponent> makeComponents(const std::vector<Contribution>& contributions, double total) {
   std::vector<MixtureComponent> components;
   for (const auto& [weight, landmark] : contributions) {
-    const auto same =
-        std::find_if(components.begin(), components.end(), [&, tracked = landmark](const auto& component) {
-          return component.position.mean_m == tracked->position.mean_m &&
-                 component.position.cov_m2 == tracked->position.cov_m2;
-        });
+    const auto same = std::find_if(components.begin(), components.end(),
+                                   [&, tracked = landmark->tracked.get()](const auto& component) {
+                                     return component.position.mean_m == tracked->position.mean_m &&
+                                            component.position.cov_m2 == tracked->position.cov_m2;
+                                   });
     if (same == components.end()) {
-      components.push_back({weight / total, landmark->position});
+      components.push_back({weight / total, (*landmark)->position});
     } else {
       same->weight += weight / total;
     }
@@ -71,11 +71,11 @@ MixtureLandmark fuse(LandmarkId id, const std::vector<Contribution>& contributio
   for (const Contribution& contribution : contributions) total += contribution.weight;
   fused.components = makeComponents(contributions, total);
   fused.position = moments(fused.components);
-  const TrackedLandmark& likeliest = *contributions.front().landmark;  // leaves come by falling weight
+  const TrackedLandmark& likeliest = **contributions.front().landmark;  // leaves come by falling weight
   fused.class_probs = ClassProbs::Zero(likeliest.class_probs.size());
   for (const auto& [weight, landmark] : contributions) {
-    fused.class_probs += weight / total * landmark->class_probs;
-    fused.existence_prob += weight * logistic(landmark->log_existence_odds);
+    fused.class_probs += weight / total * (*landmark)->class_probs;
+    fused.existence_prob += weight * logistic(landmark->existence.log_odds);
   }
   fused.observations = likeliest.observations;
   fused.first_submap = likeliest.first_submap;
@@ -88,9 +88,9 @@ MixtureLandmark fuse(LandmarkId id, const std::vector<Contribution>& contributio
 std::vector<MixtureLandmark> fuseHypotheses(const std::vector<MapHypothesis>& leaves) {
   std::map<LandmarkId, std::vector<Contribution>> contributions;
   for (const MapHypothesis& leaf : leaves) {
-    for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+    for (const HypothesisLandmark& landmark : leaf.landmarks) {
       if (landmark->is_expected) continue;  // not seen here
-      contributions[landmark->id].push_back({std::exp(leaf.log_weight), landmark.get()});
+      contributions[landmark->id].push_back({std::exp(leaf.log_weight), &landmark});
     }
   }
   std::vector<MixtureLandmark> fused;

@@ -1,7 +1,8 @@
 #include "semantic_mht_slam/mapping/hypothesis_merging.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "semantic_mht_slam/common/log_math.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -32,11 +33,6 @@ bool haveEqualHistory(const AssociationRecord* a, const AssociationRecord* b) {
   return true;
 }
 
-double logAdd(double a, double b) {
-  const double larger = std::max(a, b);
-  return larger + std::log1p(std::exp(std::min(a, b) - larger));
-}
-
 }  // namespace
 
 bool areEqual(const MapHypothesis& a, const MapHypothesis& b) {
@@ -44,7 +40,7 @@ bool areEqual(const MapHypothesis& a, const MapHypothesis& b) {
   if (a.landmarks.size() != b.landmarks.size()) return false;
   if (!haveEqualHistory(a.history.get(), b.history.get())) return false;
   for (std::size_t j = 0; j < a.landmarks.size(); ++j) {
-    if (a.landmarks[j] != b.landmarks[j] && !areEqual(*a.landmarks[j], *b.landmarks[j])) return false;
+    if (a.landmarks[j].tracked != b.landmarks[j].tracked && !areEqual(*a.landmarks[j], *b.landmarks[j])) return false;
   }
   return true;
 }

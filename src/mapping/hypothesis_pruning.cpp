@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "semantic_mht_slam/common/log_math.h"
 #include "semantic_mht_slam/mapping/resampling.h"
@@ -41,11 +42,16 @@ void normalizeAndSort(std::vector<MapHypothesis>& leaves) {
                    [](const MapHypothesis& a, const MapHypothesis& b) { return a.log_weight > b.log_weight; });
 }
 
+double logMinWeight(const MapperConfig& config) {
+  const bool has_limit = config.estimator != Estimator::kMhm;
+  return has_limit ? std::log(config.tree.min_weight) : -std::numeric_limits<double>::infinity();
+}
+
 void pruneHypotheses(const MapperConfig& config, std::vector<MapHypothesis>& leaves, Rng& rng) {
   if (config.estimator == Estimator::kMhm) {
     keepBestThird(config.tree, leaves);
   } else {
-    const double log_min = std::log(config.tree.min_weight);
+    const double log_min = logMinWeight(config);
     while (leaves.size() > 1 && leaves.back().log_weight < log_min) leaves.pop_back();
     normalizeAndSort(leaves);
     resample(config.tree, leaves, rng);

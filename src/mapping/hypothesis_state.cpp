@@ -76,9 +76,10 @@ void transferLeaf(StateArchive& archive, const Landmarks& shared_landmarks, cons
   archive(id, parent_id, born_frame, log_weight, false_positives, offset, map_offset, expected_found, expected_missed);
   histories.transferPointer(archive, history);
   landmarks.resize(archive.count(landmarks.size()));
-  for (TrackedLandmarkPtr& landmark : landmarks) {
-    shared_landmarks.transferPointer(archive, landmark);
-    if (!landmark) StateArchive::fail("a hypothesis lacks a landmark");
+  for (HypothesisLandmark& landmark : landmarks) {
+    shared_landmarks.transferPointer(archive, landmark.tracked);
+    archive(landmark.existence);
+    if (!landmark.tracked) StateArchive::fail("a hypothesis lacks a landmark");
   }
 }
 
@@ -89,11 +90,16 @@ void transfer(StateArchive& archive, PoseOffset& offset) {
   archive(mean, cov);
 }
 
+void transfer(StateArchive& archive, Existence& existence) {
+  auto& [log_odds, visible_prob, miss_likelihood] = existence;
+  archive(log_odds, visible_prob, miss_likelihood);
+}
+
 void transfer(StateArchive& archive, TrackedLandmark& landmark) {
-  auto& [id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap,
-         first_submap, last_submap, updated_at_m, earlier, miss_likelihood, is_expected] = landmark;
-  archive(id, position, class_probs, log_existence_odds, visible_prob, observations, is_from_earlier_submap);
-  archive(first_submap, last_submap, updated_at_m, earlier, miss_likelihood, is_expected);
+  auto& [id, position, class_probs, observations, is_from_earlier_submap, first_submap, last_submap, updated_at_m,
+         earlier, is_expected] = landmark;
+  archive(id, position, class_probs, observations, is_from_earlier_submap);
+  archive(first_submap, last_submap, updated_at_m, earlier, is_expected);
 }
 
 void transferLeaves(StateArchive& archive, std::vector<MapHypothesis>& leaves) {
@@ -101,8 +107,8 @@ void transferLeaves(StateArchive& archive, std::vector<MapHypothesis>& leaves) {
   Histories histories;
   if (!archive.isReading()) {
     for (const MapHypothesis& leaf : leaves) {
-      for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
-        if (landmarks.isNew(landmark)) landmarks.add(landmark);
+      for (const HypothesisLandmark& landmark : leaf.landmarks) {
+        if (landmarks.isNew(landmark.tracked)) landmarks.add(landmark.tracked);
       }
       addHistory(leaf.history, histories);
     }

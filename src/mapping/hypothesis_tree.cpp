@@ -1,7 +1,8 @@
 #include "semantic_mht_slam/mapping/hypothesis_tree.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "semantic_mht_slam/mapping/hypothesis_merging.h"
 #include "semantic_mht_slam/mapping/hypothesis_pruning.h"
@@ -12,33 +13,14 @@ namespace {
 constexpr int kSettledObservations = 3;  // landmarks that may correct the pose
 constexpr double kHuberSigma = 2.0;
 
-void sortById(std::vector<TrackedLandmarkPtr>& landmarks) {
-  std::sort(landmarks.begin(), landmarks.end(),
-            [](const TrackedLandmarkPtr& a, const TrackedLandmarkPtr& b) { return a->id < b->id; });
-}
-
 }  // namespace
 
-/// A child in the making.
-struct MultiHypothesisTree::Growth {
-  MapHypothesis child;
-  std::shared_ptr<AssociationRecord> record;
-  std::vector<char> is_seen;  ///< of each landmark of the parent
-  std::vector<TrackedLandmarkPtr> born;
-  int false_positives = 0;
-  std::vector<std::pair<std::size_t, const Measurement*>> found;  ///< expected landmarks, and what was seen of them
-};
-
 MultiHypothesisTree::MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes)
-    : config_(config),
-      model_(config, classes),
-      tracking_(config, classes),
-      branching_(config.alignment, classes),
-      class_count_(classes.size()) {
+    : config_(config), model_(config, classes), tracking_(config, classes), branching_(config.alignment, classes) {
   restart({});
 }
 
-void MultiHypothesisTree::restart(std::vector<TrackedLandmarkPtr> landmarks, EarlierMap earlier_map) {
+void MultiHypothesisTree::restart(std::vector<HypothesisLandmark> landmarks, EarlierMap earlier_map) {
   branching_.restart(std::move(earlier_map));
   MapHypothesis root;
   root.id = next_hypothesis_id_++;
@@ -48,13 +30,16 @@ void MultiHypothesisTree::restart(std::vector<TrackedLandmarkPtr> landmarks, Ear
 }
 
 void MultiHypothesisTree::step(const TreeInput& input, Rng& rng) {
-  std::vector<MapHypothesis> children;
-  for (MapHypothesis& parent : leaves_) expand(parent, input, children);
-  leaves_ = std::move(children);
+  std::vector<FrameInterpretation> interpretations;
+  if (expansions_.size() < leaves_.size()) expansions_.resize(leaves_.size());
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) expand(leaf, input, interpretations);
+  const double log_min_weight = logMinWeight(config_);
+  dropUnlikely(log_min_weight, interpretations);
+  leaves_ = makeChildren(interpretations, input);
   normalizeAndSort(leaves_);
   mergeEqualHypotheses(leaves_);
   normalizeAndSort(leaves_);
-  if (branching_.branch(input, next_hypothesis_id_, leaves_)) normalizeAndSort(leaves_);
+  if (branching_.branch(input, log_min_weight, next_hypothesis_id_, leaves_)) normalizeAndSort(leaves_);
   pruneHypotheses(config_, leaves_, rng);
 }
 
@@ -78,18 +63,19 @@ void MultiHypothesisTree::measureFrom(const Pose& T_submap_base, const PoseOffse
   }
 }
 
-PoseOffset MultiHypothesisTree::offsetAfter(const MapHypothesis& parent, const TreeInput& input,
-                                            const AssignmentList& assignments, int choice) const {
+PoseOffset MultiHypothesisTree::offsetAfter(const FrameInterpretation& interpretation, const TreeInput& input) const {
+  const MapHypothesis& parent = leaves_[interpretation.leaf];
   const Pose T_submap_base = corrected(input.T_submap_base, parent.offset);
   std::vector<OffsetObservation> observations;
-  for (int i = 0; i < problem_.measurements; ++i) {
-    const int column = assignments.column(choice, i);
-    if (!problem_.isLandmark(column)) continue;
-    const TrackedLandmark& landmark = *parent.landmarks[static_cast<std::size_t>(column)];
-    const Measurement measurement = ofObject(measurements_[static_cast<std::size_t>(i)], landmark.mostLikelyClass());
-    if (landmark.is_expected || landmark.observations < kSettledObservations ||
-        problem_.candidate(i, column)->is_outlier)
-      continue;
+  Measurement of_class;
+  for (std::size_t i = 0; i < interpretation.roles.size(); ++i) {
+    const MeasurementRole& role = interpretation.roles[i];
+    if (role.kind != MeasurementRole::Kind::kLandmark) continue;
+    const TrackedLandmark& landmark = *parent.landmarks[static_cast<std::size_t>(role.landmark)];
+    const bool is_settled = !landmark.is_expected && landmark.observations >= kSettledObservations;
+    if (!is_settled || role.candidate->is_outlier) continue;
+    const Measurement& measurement =
+        ofObject(expansions_[interpretation.leaf].measurements[i], landmark.mostLikelyClass(), of_class);
     OffsetObservation observation;
     observation.lever_m = measurement.position_m - T_submap_base.translation_m;
     observation.residual_m = landmark.position.mean_m - measurement.position_m;
@@ -101,100 +87,109 @@ PoseOffset MultiHypothesisTree::offsetAfter(const MapHypothesis& parent, const T
   return semantic_mht_slam::updated(parent.offset, observations, kHuberSigma);
 }
 
-void MultiHypothesisTree::expand(MapHypothesis& parent, const TreeInput& input, std::vector<MapHypothesis>& children) {
+void MultiHypothesisTree::expand(std::size_t leaf, const TreeInput& input,
+                                 std::vector<FrameInterpretation>& interpretations) {
+  MapHypothesis& parent = leaves_[leaf];
+  LeafExpansion& expansion = expansions_[leaf];
   predict(parent, input);
-  measureFrom(corrected(input.T_submap_base, parent.offset), &parent.offset, input, measurements_);
-  model_.formulate(parent, measurements_, input.driven_m, problem_);
+  measureFrom(corrected(input.T_submap_base, parent.offset), &parent.offset, input, expansion.measurements);
+  model_.formulate(parent, expansion.measurements, input.driven_m, expansion.problem);
+  tracking_.lookOut(parent, input, expansion.outlooks);
   KBestOptions options;
   const bool is_single = config_.estimator == Estimator::kUkf || config_.tree.max_hypotheses == 1;
   options.max_assignments = is_single ? 1 : config_.tree.max_branches;
   options.max_cost_gap = config_.tree.branch_log_ratio;
-  const AssignmentList& assignments = solver_.solve(problem_.costs, options);
+  const AssignmentList& assignments = solver_.solve(expansion.problem.costs, options);
+  FrameInterpreter interpreter(config_, model_, parent, expansion);
   for (int choice = 0; choice < assignments.size(); ++choice) {
-    children.push_back(makeChild(parent, input, assignments, choice));
+    FrameInterpretation interpretation = interpreter.interpret(assignments, choice);
+    interpretation.leaf = leaf;
+    addInterpretation(std::move(interpretation), interpretations);
   }
 }
 
-MapHypothesis MultiHypothesisTree::makeChild(const MapHypothesis& parent, const TreeInput& input,
-                                             const AssignmentList& assignments, int choice) {
-  Growth growth{parent, std::make_shared<AssociationRecord>(), std::vector<char>(parent.landmarks.size(), 0), {}, 0,
-                {}};
-  MapHypothesis& child = growth.child;
+std::vector<MapHypothesis> MultiHypothesisTree::makeChildren(const std::vector<FrameInterpretation>& interpretations,
+                                                             const TreeInput& input) {
+  std::vector<int> children(leaves_.size(), 0);
+  for (const FrameInterpretation& interpretation : interpretations) ++children[interpretation.leaf];
+  std::vector<int> unmade = children;
+  std::vector<MapHypothesis> result;
+  for (const FrameInterpretation& interpretation : interpretations) {
+    const std::size_t leaf = interpretation.leaf;
+    result.push_back(makeChild(interpretation, input, --unmade[leaf] == 0));
+    if (children[leaf] == 1) continue;
+    result.back().id = next_hypothesis_id_++;
+    result.back().parent_id = leaves_[leaf].id;
+    result.back().born_frame = input.frame;
+  }
+  return result;
+}
+
+MapHypothesis MultiHypothesisTree::makeChild(const FrameInterpretation& interpretation, const TreeInput& input,
+                                             bool is_last) {
+  MapHypothesis& parent = leaves_[interpretation.leaf];
+  MapHypothesis child = withoutLandmarks(parent);
+  child.log_weight = interpretation.log_weight;
+  child.false_positives += interpretation.false_positives;
+  child.expected_found = interpretation.expected_found;
+  child.expected_missed = interpretation.expected_missed;
   const bool is_corrected = config_.submap.correct_pose;
-  if (is_corrected) child.offset = offsetAfter(parent, input, assignments, choice);
+  if (is_corrected) child.offset = offsetAfter(interpretation, input);
   measureFrom(corrected(input.T_submap_base, child.offset), is_corrected ? nullptr : &child.offset, input, corrected_);
-  if (assignments.size() > 1) {
-    child.id = next_hypothesis_id_++;
-    child.parent_id = parent.id;
-    child.born_frame = input.frame;
-  }
-  growth.record->previous = parent.history;
-  growth.record->frame = input.frame;
-  growth.record->landmark_of_measurement.assign(input.measurements.size(), kNoLandmark);
-  for (int i = 0; i < problem_.measurements; ++i) {
-    const int column = assignments.column(choice, i);
-    if (problem_.isLandmark(column)) growth.is_seen[static_cast<std::size_t>(column)] = 1;
-  }
-  for (int i = 0; i < problem_.measurements; ++i) assign(i, assignments.column(choice, i), parent, input, growth);
-  child.false_positives += growth.false_positives;
-  child.log_weight +=
-      model_.logAssignmentPrior(static_cast<int>(growth.born.size()), growth.false_positives, problem_.measurements);
-  child.log_weight += tracking_.applyMissedDetections(child, input, growth.is_seen);
-  if (child.map_offset) {
-    branching_.follow(parent, growth.found, child);
-    child.log_weight += logExpectationEvidence(child) - logExpectationEvidence(parent);
-  }
-  child.landmarks.insert(child.landmarks.end(), growth.born.begin(), growth.born.end());
-  if (!growth.found.empty()) sortById(child.landmarks);
-  child.history = std::move(growth.record);
-  return std::move(growth.child);
-}
-
-void MultiHypothesisTree::assign(int measurement, int column, const MapHypothesis& parent, const TreeInput& input,
-                                 Growth& growth) const {
-  const auto k = static_cast<std::size_t>(measurement);
-  const Measurement& seen = corrected_[k];
-  MapHypothesis& child = growth.child;
-  LandmarkId& landmark = growth.record->landmark_of_measurement[k];
-  child.log_weight += model_.logClassPrior(seen.class_index);
-  if (problem_.isLandmark(column)) {
-    const auto j = static_cast<std::size_t>(column);
-    const Candidate& candidate = *problem_.candidate(measurement, column);
-    child.landmarks[j] = tracking_.updated(model_, *parent.landmarks[j], seen, input, candidate);
-    child.log_weight += candidate.log_likelihood;
-    if (parent.landmarks[j]->is_expected) {
-      growth.found.emplace_back(j, &seen);
-      ++child.expected_found;
-      child.expected_missed -= 1.0 - parent.landmarks[j]->miss_likelihood;
-    }
-    landmark = child.landmarks[j]->id;
-    return;
-  }
-  child.log_weight += model_.logUniformDensity();
-  const int whole = splitOf(parent, measurement, growth.is_seen);
-  if (whole >= 0) {
-    landmark = parent.landmarks[static_cast<std::size_t>(whole)]->id;
-    ++growth.false_positives;
-  } else if (problem_.isNew(column)) {
-    growth.born.push_back(tracking_.begun(model_, seen, input));
-    landmark = seen.id_if_new;
+  if (is_last) {
+    child.landmarks = std::move(parent.landmarks);
   } else {
-    ++growth.false_positives;
+    child.landmarks = parent.landmarks;
   }
+  trackLandmarks(interpretation, input, child);
+  auto record = std::make_shared<AssociationRecord>();
+  record->previous = parent.history;
+  record->frame = input.frame;
+  record->landmark_of_measurement = interpretation.landmark_of_measurement;
+  child.history = std::move(record);
+  return child;
 }
 
-int MultiHypothesisTree::splitOf(const MapHypothesis& parent, int measurement, const std::vector<char>& is_seen) const {
-  const double split_prob = config_.association.split_prob;
-  int whole = -1;
-  if (config_.estimator == Estimator::kUkf || split_prob == 0.0) return whole;
-  double likeliest = model_.logClutterDensity() - std::log(split_prob);
-  for (const Candidate& candidate : problem_.gated[static_cast<std::size_t>(measurement)]) {
-    const auto j = static_cast<std::size_t>(candidate.landmark);
-    if (is_seen[j] == 0 || parent.landmarks[j]->is_expected || candidate.log_part_likelihood <= likeliest) continue;
-    likeliest = candidate.log_part_likelihood;
-    whole = candidate.landmark;
+void MultiHypothesisTree::trackLandmarks(const FrameInterpretation& interpretation, const TreeInput& input,
+                                         MapHypothesis& child) const {
+  const LeafExpansion& expansion = expansions_[interpretation.leaf];
+  std::vector<HypothesisLandmark>& landmarks = child.landmarks;
+  std::vector<int> measurement_of(landmarks.size(), -1);
+  for (std::size_t i = 0; i < interpretation.roles.size(); ++i) {
+    const MeasurementRole& role = interpretation.roles[i];
+    if (role.kind != MeasurementRole::Kind::kLandmark) continue;
+    measurement_of[static_cast<std::size_t>(role.landmark)] = static_cast<int>(i);
   }
-  return whole;
+  std::vector<std::pair<int, const Measurement*>> found;
+  std::vector<HypothesisLandmark> first_seen;  // whose ids are later than all others
+  std::size_t kept = 0;
+  for (std::size_t j = 0; j < landmarks.size(); ++j) {
+    HypothesisLandmark landmark = std::move(landmarks[j]);
+    const LandmarkOutlook& outlook = expansion.outlooks[j];
+    if (measurement_of[j] < 0) {
+      if (outlook.is_forgotten) continue;
+      landmark.existence = outlook.missed;
+    } else {
+      const auto i = static_cast<std::size_t>(measurement_of[j]);
+      const Candidate& candidate = *interpretation.roles[i].candidate;
+      const bool was_expected = landmark->is_expected;
+      landmark = tracking_.updated(model_, landmark, corrected_[i], input, candidate, outlook.detection_prob);
+      if (was_expected) {
+        found.emplace_back(landmark->earlier, &corrected_[i]);
+        first_seen.push_back(std::move(landmark));
+        continue;
+      }
+    }
+    landmarks[kept++] = std::move(landmark);
+  }
+  landmarks.resize(kept);
+  for (std::size_t i = 0; i < interpretation.roles.size(); ++i) {
+    if (interpretation.roles[i].kind != MeasurementRole::Kind::kNew) continue;
+    first_seen.push_back(tracking_.begun(model_, corrected_[i], input));
+  }
+  std::sort(first_seen.begin(), first_seen.end(), [](const auto& a, const auto& b) { return a->id < b->id; });
+  std::move(first_seen.begin(), first_seen.end(), std::back_inserter(landmarks));
+  if (!found.empty()) branching_.follow(found, child);
 }
 
 }  // namespace semantic_mht_slam

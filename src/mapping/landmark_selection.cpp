@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kSettledObservations = 3;
 
-bool isSettled(const TrackedLandmark& landmark) {
-  return !landmark.is_expected && landmark.observations >= kSettledObservations && landmark.log_existence_odds > 0.0;
+bool isSettled(const HypothesisLandmark& landmark) {
+  return !landmark->is_expected && landmark->observations >= kSettledObservations && landmark.existence.log_odds > 0.0;
 }
 
 }  // namespace
@@ -17,10 +17,10 @@ bool isSettled(const TrackedLandmark& landmark) {
 std::vector<const TrackedLandmark*> nearestLandmarks(const MapHypothesis& leaf, const Eigen::Vector3d& center_m,
                                                      double radius_m, int count) {
   std::vector<std::tuple<double, LandmarkId, const TrackedLandmark*>> near;
-  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+  for (const HypothesisLandmark& landmark : leaf.landmarks) {
     const double distance_m = (landmark->position.mean_m - center_m).norm();
-    if (isSettled(*landmark) && distance_m < radius_m) {
-      near.emplace_back(distance_m, landmark->id, landmark.get());
+    if (isSettled(landmark) && distance_m < radius_m) {
+      near.emplace_back(distance_m, landmark->id, landmark.tracked.get());
     }
   }
   std::sort(near.begin(), near.end());
@@ -32,9 +32,9 @@ std::vector<const TrackedLandmark*> nearestLandmarks(const MapHypothesis& leaf, 
 
 std::vector<const TrackedLandmark*> mostSeenLandmarks(const MapHypothesis& leaf, int count) {
   std::vector<std::tuple<int, LandmarkId, const TrackedLandmark*>> seen;
-  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
-    const bool is_of_submap = isSettled(*landmark) && !landmark->is_from_earlier_submap;
-    if (is_of_submap) seen.emplace_back(-landmark->observations, landmark->id, landmark.get());
+  for (const HypothesisLandmark& landmark : leaf.landmarks) {
+    const bool is_of_submap = isSettled(landmark) && !landmark->is_from_earlier_submap;
+    if (is_of_submap) seen.emplace_back(-landmark->observations, landmark->id, landmark.tracked.get());
   }
   std::sort(seen.begin(), seen.end());
   seen.resize(std::min(seen.size(), static_cast<std::size_t>(count)));

@@ -17,7 +17,7 @@ constexpr double kMaxLogExistenceOdds = 20.0;  // what hundreds of frames behind
 }  // namespace
 
 LandmarkTracking::LandmarkTracking(const MapperConfig& config, const ClassTable& classes)
-    : config_(config), rate_(config.detection, classes.size()) {}
+    : config_(config), log_forget_odds_(logit(config.detection.forget_prob)), rate_(config.detection, classes.size()) {}
 
 std::optional<FilterUpdate> LandmarkTracking::filtered(const Gaussian3& predicted, const Measurement& measurement,
                                                        bool is_outlier) const {
@@ -40,10 +40,12 @@ std::optional<FilterUpdate> LandmarkTracking::filtered(const Gaussian3& predicte
   return unscentedUpdate(predicted, polar);
 }
 
-TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, const TrackedLandmark& landmark,
+HypothesisLandmark LandmarkTracking::updated(const AssociationModel& model, const HypothesisLandmark& known,
                                              const Measurement& detected, const TreeInput& input,
-                                             const Candidate& candidate) const {
-  const Measurement measurement = ofObject(detected, landmark.mostLikelyClass());
+                                             const Candidate& candidate, double detection_prob) const {
+  const TrackedLandmark& landmark = *known;
+  Measurement of_class;
+  const Measurement& measurement = ofObject(detected, landmark.mostLikelyClass(), of_class);
   auto result = std::make_shared<TrackedLandmark>(landmark);
   Gaussian3 predicted = landmark.position;
   predicted.cov_m2.diagonal().head<2>().array() +=
@@ -62,60 +64,53 @@ TrackedLandmarkPtr LandmarkTracking::updated(const AssociationModel& model, cons
   result->is_from_earlier_submap = false;
   result->last_submap = input.submap;
   // A detection where the landmark is speaks for it against clutter, which would be anywhere in the volume.
-  applyHit(*result, detectionProb(landmark, input), config_.detection.visibility_switch_prob,
+  Existence existence = known.existence;
+  applyHit(existence, detection_prob, config_.detection.visibility_switch_prob,
            candidate.log_likelihood - model.logClutterDensity(), kMaxLogExistenceOdds);
-  return result;
+  return {std::move(result), existence};
 }
 
-TrackedLandmarkPtr LandmarkTracking::begun(const AssociationModel& model, const Measurement& measurement,
+HypothesisLandmark LandmarkTracking::begun(const AssociationModel& model, const Measurement& measurement,
                                            const TreeInput& input) const {
   auto landmark = std::make_shared<TrackedLandmark>();
   landmark->id = measurement.id_if_new;
   landmark->position = {measurement.position_m, measurement.cov_m2};
   landmark->class_probs = model.initialClassProbs(measurement.class_index);
-  landmark->log_existence_odds = logit(config_.detection.birth_prob);
   landmark->observations = 1;
   landmark->first_submap = input.submap;
   landmark->last_submap = input.submap;
   landmark->updated_at_m = input.driven_m;
-  return landmark;
+  Existence existence;
+  existence.log_odds = logit(config_.detection.birth_prob);
+  return {std::move(landmark), existence};
 }
 
-double LandmarkTracking::detectionProb(const TrackedLandmark& landmark, const TreeInput& input) const {
-  const Eigen::Vector3d position_m =
-      input.T_submap_base.rotation.conjugate() * (landmark.position.mean_m - input.T_submap_base.translation_m);
-  return std::max(kLowDetectionProb, rate_.prob(landmark.mostLikelyClass(), position_m));
-}
-
-double LandmarkTracking::applyMissedDetections(MapHypothesis& hypothesis, const TreeInput& input,
-                                               const std::vector<char>& is_seen) const {
-  if (!config_.detection.missed_detections) return 0.0;
-  const double switch_prob = config_.detection.visibility_switch_prob;
-  const double forget_log_odds = logit(config_.detection.forget_prob);
-  double log_weight = 0.0;
-  std::size_t kept = 0;
-  for (std::size_t j = 0; j < hypothesis.landmarks.size(); ++j) {
-    TrackedLandmarkPtr landmark = std::move(hypothesis.landmarks[j]);
-    const double detection_prob = detectionProb(*landmark, input);
-    if (is_seen[j] != 0) {
-      log_weight += std::log(detection_prob);
-    } else if (detection_prob > kLowDetectionProb) {
-      auto missed = std::make_shared<TrackedLandmark>(*landmark);
-      const double likelihood = applyMiss(*missed, detection_prob, switch_prob);
-      const double existence = logistic(landmark->log_existence_odds);
-      if (landmark->is_expected) {
-        hypothesis.expected_missed += landmark->miss_likelihood * (1.0 - likelihood);
-        missed->miss_likelihood *= likelihood;
-      } else {
-        log_weight += std::log1p(-existence * (1.0 - likelihood));
-      }
-      landmark = std::move(missed);
-      if (landmark->log_existence_odds < forget_log_odds) continue;
-    }
-    hypothesis.landmarks[kept++] = std::move(landmark);
+void LandmarkTracking::miss(const HypothesisLandmark& landmark, LandmarkOutlook& outlook) const {
+  const double likelihood = applyMiss(outlook.missed, outlook.detection_prob, config_.detection.visibility_switch_prob);
+  if (landmark->is_expected) {
+    outlook.expected_missed = outlook.missed.miss_likelihood * (1.0 - likelihood);
+    outlook.missed.miss_likelihood *= likelihood;
+  } else {
+    outlook.log_missed = std::log1p(-logistic(landmark.existence.log_odds) * (1.0 - likelihood));
   }
-  hypothesis.landmarks.resize(kept);
-  return log_weight;
+  outlook.is_forgotten = outlook.missed.log_odds < log_forget_odds_;
+}
+
+void LandmarkTracking::lookOut(const MapHypothesis& hypothesis, const TreeInput& input,
+                               std::vector<LandmarkOutlook>& outlooks) const {
+  const Eigen::Matrix3d R_base_submap = input.T_submap_base.rotation.conjugate().toRotationMatrix();
+  const double max_range_m = config_.detection.max_range_m;
+  outlooks.resize(hypothesis.landmarks.size());
+  for (std::size_t j = 0; j < outlooks.size(); ++j) {
+    const HypothesisLandmark& landmark = hypothesis.landmarks[j];
+    LandmarkOutlook& outlook = outlooks[j];
+    outlook = {kLowDetectionProb, 0.0, 0.0, landmark.existence, false};
+    const Eigen::Vector3d lever_m = landmark->position.mean_m - input.T_submap_base.translation_m;
+    const Eigen::Vector3d position_m = R_base_submap * lever_m;
+    if (position_m.head<2>().squaredNorm() > max_range_m * max_range_m) continue;
+    outlook.detection_prob = std::max(kLowDetectionProb, rate_.prob(landmark->mostLikelyClass(), position_m));
+    if (config_.detection.missed_detections && outlook.detection_prob > kLowDetectionProb) miss(landmark, outlook);
+  }
 }
 
 }  // namespace semantic_mht_slam

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <iterator>
 #include <tuple>
 
 #include <Eigen/Geometry>
@@ -10,6 +10,8 @@
 
 #include "semantic_mht_slam/common/log_math.h"
 
+#include "earlier_map_placement.h"
+#include "expected_landmarks.h"
 #include "landmark_selection.h"
 
 namespace semantic_mht_slam {
@@ -18,16 +20,8 @@ namespace {
 constexpr double kGateMahalanobisSq = 11.3;
 constexpr double kMaxGate_m = 4.0;
 constexpr double kHuberSigma = 2.0;
-constexpr double kHiddenOrNot = 0.5;                 // whether an expected landmark is in sight is not known
-constexpr double kMinExistence = 0.5;                // of earlier landmarks that are expected
 constexpr double kMaxWithheld = 3.0;                 // nats of the evidence that the first look held back, at the end
 constexpr double kFinal_m = 0.5, kFinal_rad = 0.02;  // prior of the last refinement, around the hypothesis's offset
-
-ClassIndex likeliestClass(const ClassProbs& probs) {
-  Eigen::Index most_likely = 0;
-  probs.maxCoeff(&most_likely);
-  return static_cast<ClassIndex>(most_likely);
-}
 
 PoseOffset offsetOf(const AlignmentHypothesis& mode) {
   const Eigen::Matrix3d R = mode.T_a_b.rotation.toRotationMatrix();
@@ -37,21 +31,11 @@ PoseOffset offsetOf(const AlignmentHypothesis& mode) {
   return offset;
 }
 
-Pose poseOf(const PoseOffset& offset) {
-  return corrected(Pose::identity(), offset);
-}
-
-double logMatchOdds(double existence_prob, bool is_static, const JointAlignmentConfig& config) {
-  const double match_prob = is_static ? config.static_match_prob : config.movable_match_prob;
-  return logit(std::clamp(existence_prob * match_prob, 0.001, 0.999));
-}
-
 }  // namespace
 
-double logExpectationEvidence(const MapHypothesis& hypothesis) {
-  const double found = hypothesis.expected_found;
-  const double missed = std::max(0.0, hypothesis.expected_missed);
-  return std::lgamma(1.0 + found) + std::lgamma(1.0 + missed) - std::lgamma(2.0 + found + missed);
+double logExpectationEvidence(int found, double missed) {
+  const double unseen = std::max(0.0, missed);
+  return std::lgamma(1.0 + found) + std::lgamma(1.0 + unseen) - std::lgamma(2.0 + found + unseen);
 }
 
 MapBranching::MapBranching(const MapAlignmentConfig& config, const ClassTable& classes)
@@ -59,6 +43,8 @@ MapBranching::MapBranching(const MapAlignmentConfig& config, const ClassTable& c
 
 void MapBranching::restart(EarlierMap map) {
   map_ = std::move(map);
+  std::sort(map_.landmarks.begin(), map_.landmarks.end(),
+            [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
   next_attempt_m_ = config_.first_m;
   index_of_.clear();
   for (std::size_t i = 0; i < map_.landmarks.size(); ++i) index_of_[map_.landmarks[i].id] = static_cast<int>(i);
@@ -71,7 +57,7 @@ std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const Tra
   std::vector<AlignmentPoint> points;
   Eigen::AlignedBox3d box;
   for (const TrackedLandmark* landmark : landmarks) {
-    points.push_back({landmark->position.mean_m, landmark->position.cov_m2, likeliestClass(landmark->class_probs)});
+    points.push_back({landmark->position.mean_m, landmark->position.cov_m2, landmark->mostLikelyClass()});
     ids.push_back(landmark->id);
     box.extend(prior.T_a_b * landmark->position.mean_m);
   }
@@ -100,7 +86,7 @@ MapBranching::Matches MapBranching::matchesOf(const AlignmentHypothesis& mode,
   return matches;
 }
 
-bool MapBranching::branch(const TreeInput& input, std::uint64_t& next_hypothesis_id,
+bool MapBranching::branch(const TreeInput& input, double log_min_weight, std::uint64_t& next_hypothesis_id,
                           std::vector<MapHypothesis>& leaves) {
   if (!config_.enabled || map_.landmarks.empty() || input.driven_m < next_attempt_m_) return false;
   const bool is_decided = std::any_of(leaves.begin(), leaves.end(), [](const auto& leaf) { return leaf.map_offset; });
@@ -112,14 +98,22 @@ bool MapBranching::branch(const TreeInput& input, std::uint64_t& next_hypothesis
       nearestLandmarks(leaves.front(), input.T_submap_base.translation_m, config_.radius_m, config_.max_landmarks),
       prior, ids);
   if (modes.empty()) return false;
-  const double excess = std::max(0.0, modes.front().log_likelihood - config_.max_log_evidence);
+  const double gain = config_.log_prior_odds - std::max(0.0, modes.front().log_likelihood - config_.max_log_evidence);
+  std::vector<double> log_weights;
+  for (const MapHypothesis& leaf : leaves) {
+    log_weights.push_back(leaf.log_weight);
+    for (const AlignmentHypothesis& mode : modes) log_weights.push_back(leaf.log_weight + mode.log_likelihood + gain);
+  }
+  const double log_least = logSumExp(log_weights) + log_min_weight;
   const std::size_t parents = leaves.size();
   for (const AlignmentHypothesis& mode : modes) {
     const Matches matches = matchesOf(mode, ids);
     for (std::size_t p = 0; p < parents; ++p) {
-      leaves.push_back(aligned(leaves[p], mode, matches, input));
+      const double log_weight = leaves[p].log_weight + mode.log_likelihood + gain;
+      if (log_weight < log_least) continue;
+      leaves.push_back(aligned(leaves[p], offsetOf(mode), matches, input));
       MapHypothesis& child = leaves.back();
-      child.log_weight += mode.log_likelihood - excess + config_.log_prior_odds;
+      child.log_weight = log_weight;
       child.id = next_hypothesis_id++;
       child.parent_id = leaves[p].id;
       child.born_frame = input.frame;
@@ -128,99 +122,89 @@ bool MapBranching::branch(const TreeInput& input, std::uint64_t& next_hypothesis
   return true;
 }
 
-MapHypothesis MapBranching::aligned(const MapHypothesis& leaf, const AlignmentHypothesis& mode, const Matches& matches,
+MapHypothesis MapBranching::aligned(const MapHypothesis& leaf, const PoseOffset& offset, Matches matches,
                                     const TreeInput& input) const {
   MapHypothesis child = leaf;
-  child.map_offset = offsetOf(mode);
-  Matches all = matches;
-  matchTheRest(leaf, *child.map_offset, all);
-  std::set<int> taken;
-  for (TrackedLandmarkPtr& landmark : child.landmarks) {
-    const auto found = all.find(landmark->id);
-    if (found == all.end()) continue;
+  child.map_offset = offset;
+  const EarlierMapPlacement placement = placementBy(*child.map_offset);
+  matchTheRest(leaf, placement, matches);
+  std::vector<char> is_taken(map_.landmarks.size(), 0);
+  for (HypothesisLandmark& landmark : child.landmarks) {
+    const auto found = matches.find(landmark->id);
+    if (found == matches.end()) continue;
     auto joined = std::make_shared<TrackedLandmark>(*landmark);
     joined->earlier = found->second;
-    taken.insert(found->second);
-    landmark = std::move(joined);
+    is_taken[static_cast<std::size_t>(found->second)] = 1;
+    landmark.tracked = std::move(joined);
   }
-  const double reach_m = config_.radius_m;
+  const double average = averageObservations(map_.landmarks);
+  std::vector<HypothesisLandmark> landmarks;
+  auto known = child.landmarks.begin();
   for (int i = 0; i < static_cast<int>(map_.landmarks.size()); ++i) {
     const MixtureLandmark& earlier = map_.landmarks[static_cast<std::size_t>(i)];
-    if (taken.count(i) > 0 || earlier.existence_prob < kMinExistence) continue;
-    TrackedLandmarkPtr landmark = expected(i, *child.map_offset, input);
-    const double distance_m = (landmark->position.mean_m - input.T_submap_base.translation_m).head<2>().norm();
-    const LandmarkPlace known = findLandmark(child.landmarks, earlier.id);
-    if (distance_m < reach_m && !known.landmark) child.landmarks.insert(known.place, std::move(landmark));
+    if (is_taken[static_cast<std::size_t>(i)] != 0 || !isExpected(earlier, average)) continue;
+    const double distance_m = (placement.mean_m(i) - input.T_submap_base.translation_m).head<2>().norm();
+    if (distance_m >= config_.radius_m) continue;
+    while (known != child.landmarks.end() && (*known)->id < earlier.id) landmarks.push_back(std::move(*known++));
+    const bool is_known = known != child.landmarks.end() && (*known)->id == earlier.id;
+    if (!is_known)
+      landmarks.push_back(expectedLandmark(earlier, i, placement(i), input.driven_m, classes_, config_.joint));
   }
+  std::move(known, child.landmarks.end(), std::back_inserter(landmarks));
+  child.landmarks = std::move(landmarks);
   return child;
 }
 
-void MapBranching::matchTheRest(const MapHypothesis& leaf, const PoseOffset& offset, Matches& matches) const {
-  std::set<int> taken;
-  for (const auto& [id, earlier] : matches) taken.insert(earlier);
-  std::vector<std::pair<int, Gaussian3>> free;
+void MapBranching::matchTheRest(const MapHypothesis& leaf, const EarlierMapPlacement& placement,
+                                Matches& matches) const {
+  std::vector<char> is_taken(map_.landmarks.size(), 0);
+  for (const auto& [id, earlier] : matches) is_taken[static_cast<std::size_t>(earlier)] = 1;
+  struct Free {
+    Eigen::Vector3d mean_m;
+    int earlier;
+    ClassIndex class_index;
+  };
+  std::vector<Free> free;  // by rising x
   for (int i = 0; i < static_cast<int>(map_.landmarks.size()); ++i) {
-    if (taken.count(i) == 0) free.emplace_back(i, placed(i, offset));
+    const auto k = static_cast<std::size_t>(i);
+    if (is_taken[k] == 0) free.push_back({placement.mean_m(i), i, map_.landmarks[k].mostLikelyClass()});
   }
+  std::sort(free.begin(), free.end(), [](const Free& a, const Free& b) { return a.mean_m.x() < b.mean_m.x(); });
   std::vector<std::tuple<double, LandmarkId, int>> pairs;
-  for (const TrackedLandmarkPtr& landmark : leaf.landmarks) {
+  for (const HypothesisLandmark& landmark : leaf.landmarks) {
     if (landmark->is_expected || matches.count(landmark->id) > 0) continue;
-    const ClassIndex class_index = likeliestClass(landmark->class_probs);
-    for (const auto& [i, there] : free) {
-      const Eigen::Vector3d d = there.mean_m - landmark->position.mean_m;
-      if (d.head<2>().norm() > kMaxGate_m) continue;
-      if (map_.landmarks[static_cast<std::size_t>(i)].mostLikelyClass() != class_index) continue;
-      const auto fit = evaluate({Eigen::Vector3d::Zero(), there.cov_m2 + landmark->position.cov_m2}, d);
-      if (fit && fit->mahalanobis_sq < kGateMahalanobisSq) pairs.emplace_back(fit->mahalanobis_sq, landmark->id, i);
+    const Eigen::Vector3d& mean_m = landmark->position.mean_m;
+    const ClassIndex class_index = landmark->mostLikelyClass();
+    auto near = std::lower_bound(free.begin(), free.end(), mean_m.x() - kMaxGate_m,
+                                 [](const Free& known, double x_m) { return known.mean_m.x() < x_m; });
+    for (; near != free.end() && near->mean_m.x() <= mean_m.x() + kMaxGate_m; ++near) {
+      const Eigen::Vector3d d = near->mean_m - mean_m;
+      if (near->class_index != class_index || d.head<2>().squaredNorm() > kMaxGate_m * kMaxGate_m) continue;
+      const Eigen::Matrix3d cov_m2 = placement.cov_m2(near->earlier) + landmark->position.cov_m2;
+      const auto fit = evaluate({Eigen::Vector3d::Zero(), cov_m2}, d);
+      if (!fit || fit->mahalanobis_sq >= kGateMahalanobisSq) continue;
+      pairs.emplace_back(fit->mahalanobis_sq, landmark->id, near->earlier);
     }
   }
   std::sort(pairs.begin(), pairs.end());
   for (const auto& [distance, id, earlier] : pairs) {
-    if (matches.count(id) > 0 || taken.count(earlier) > 0) continue;
+    if (matches.count(id) > 0 || is_taken[static_cast<std::size_t>(earlier)] != 0) continue;
     matches[id] = earlier;
-    taken.insert(earlier);
+    is_taken[static_cast<std::size_t>(earlier)] = 1;
   }
 }
 
-Gaussian3 MapBranching::placed(int earlier, const PoseOffset& offset) const {
-  const MixtureLandmark& landmark = map_.landmarks[static_cast<std::size_t>(earlier)];
-  const Pose T_submap_earlier = poseOf(offset).inverse();
-  const Eigen::Matrix3d R = T_submap_earlier.rotation.toRotationMatrix();
-  const Eigen::Vector3d lever_m = landmark.position.mean_m - offset.mean.head<3>();
-  Eigen::Matrix3d cov = landmark.position.cov_m2 + pointCov(offset, lever_m);
-  cov.diagonal().array() += config_.joint.noise_floor_m * config_.joint.noise_floor_m;
-  const Eigen::Matrix3d turned = R * cov * R.transpose();
-  return {T_submap_earlier * landmark.position.mean_m, 0.5 * (turned + turned.transpose())};
+EarlierMapPlacement MapBranching::placementBy(const PoseOffset& offset) const {
+  return {map_.landmarks, offset, config_.joint.noise_floor_m};
 }
 
-TrackedLandmarkPtr MapBranching::expected(int earlier, const PoseOffset& offset, const TreeInput& input) const {
-  const MixtureLandmark& landmark = map_.landmarks[static_cast<std::size_t>(earlier)];
-  auto result = std::make_shared<TrackedLandmark>();
-  result->id = landmark.id;
-  result->position = placed(earlier, offset);
-  result->class_probs = landmark.class_probs;
-  result->log_existence_odds =
-      logMatchOdds(landmark.existence_prob, classes_[landmark.mostLikelyClass()].is_static, config_.joint);
-  result->visible_prob = kHiddenOrNot;
-  result->observations = landmark.observations;
-  result->is_from_earlier_submap = true;
-  result->first_submap = landmark.first_submap;
-  result->last_submap = landmark.last_submap;
-  result->updated_at_m = input.driven_m;
-  result->earlier = earlier;
-  result->is_expected = true;
-  return result;
-}
-
-void MapBranching::follow(const MapHypothesis& parent,
-                          const std::vector<std::pair<std::size_t, const Measurement*>>& seen,
-                          MapHypothesis& child) const {
+void MapBranching::follow(const std::vector<std::pair<int, const Measurement*>>& seen, MapHypothesis& leaf) const {
   if (seen.empty()) return;
-  const Pose T_earlier_submap = poseOf(*parent.map_offset);
+  const Pose T_earlier_submap = poseOf(*leaf.map_offset);
   const Eigen::Matrix3d R = T_earlier_submap.rotation.toRotationMatrix();
   std::vector<OffsetObservation> observations;
-  for (const auto& [place, measurement] : seen) {
-    const Gaussian3& earlier = map_.landmarks[static_cast<std::size_t>(parent.landmarks[place]->earlier)].position;
+  for (const auto& [index, measurement] : seen) {
+    const Gaussian3& earlier = map_.landmarks[static_cast<std::size_t>(index)].position;
     OffsetObservation observation;
     observation.lever_m = R * measurement->position_m;
     observation.residual_m = earlier.mean_m - T_earlier_submap * measurement->position_m;
@@ -228,12 +212,13 @@ void MapBranching::follow(const MapHypothesis& parent,
     observation.cov_m2.diagonal().array() += config_.joint.noise_floor_m * config_.joint.noise_floor_m;
     observations.push_back(observation);
   }
-  child.map_offset = updated(*parent.map_offset, observations, kHuberSigma);
-  for (TrackedLandmarkPtr& landmark : child.landmarks) {
+  leaf.map_offset = updated(*leaf.map_offset, observations, kHuberSigma);
+  const EarlierMapPlacement placement = placementBy(*leaf.map_offset);
+  for (HypothesisLandmark& landmark : leaf.landmarks) {
     if (!landmark->is_expected) continue;
     auto moved = std::make_shared<TrackedLandmark>(*landmark);
-    moved->position = placed(landmark->earlier, *child.map_offset);
-    landmark = std::move(moved);
+    moved->position = placement(landmark->earlier);
+    landmark.tracked = std::move(moved);
   }
 }
 
@@ -275,7 +260,7 @@ std::optional<MapConclusion> MapBranching::conclude(const std::vector<MapHypothe
   alignment.matches = static_cast<int>(matches.size());
   alignment.is_accepted = alignment.weight >= config_.accept_prob && alignment.matches >= config_.min_matches;
   if (!alignment.is_accepted) return result;
-  matchTheRest(*best, offset, matches);
+  matchTheRest(*best, placementBy(offset), matches);
   for (const auto& [id, earlier] : matches) {
     const LandmarkId survivor = map_.landmarks[static_cast<std::size_t>(earlier)].id;
     if (id != survivor && index_of_.count(id) == 0) result.merged.push_back({id, survivor});

@@ -29,8 +29,8 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
 
 /// What a hypothesis believes of a landmark's visibility; that it is seen, if the hypothesis does not have it.
 double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
-  const TrackedLandmark* landmark = findLandmark(hypothesis.landmarks, id).landmark;
-  return landmark != nullptr ? landmark->visible_prob : 1.0;
+  const HypothesisLandmark* landmark = findLandmark(id, hypothesis.landmarks);
+  return landmark != nullptr ? landmark->existence.visible_prob : 1.0;
 }
 
 }  // namespace
@@ -162,17 +162,17 @@ void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {
   tree_.restart(propagated(T_old_base.inverse()), is_asked ? earlier_map_provider_(T_odom_submap_) : EarlierMap{});
 }
 
-std::vector<TrackedLandmarkPtr> Mapper::propagated(const Pose& T_new_old) const {
+std::vector<HypothesisLandmark> Mapper::propagated(const Pose& T_new_old) const {
   const Eigen::Matrix3d R = T_new_old.rotation.toRotationMatrix();
-  std::vector<TrackedLandmarkPtr> result;
-  for (const TrackedLandmarkPtr& landmark : carried_) {
+  std::vector<HypothesisLandmark> result;
+  for (const HypothesisLandmark& landmark : carried_) {
     auto moved = std::make_shared<TrackedLandmark>(*landmark);
     moved->position.mean_m = T_new_old * landmark->position.mean_m;
     const Eigen::Matrix3d cov = R * landmark->position.cov_m2 * R.transpose();
     moved->position.cov_m2 = cov + pointCov(carried_offset_, moved->position.mean_m);
     moved->is_from_earlier_submap = true;
     moved->updated_at_m = 0.0;
-    result.push_back(std::move(moved));
+    result.push_back({std::move(moved), landmark.existence});
   }
   return result;
 }
@@ -236,12 +236,13 @@ void Mapper::carry(const MixtureLandmark& landmark) {
   carried->id = landmark.id;
   carried->position = landmark.position;
   carried->class_probs = landmark.class_probs;
-  carried->log_existence_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
-  carried->visible_prob = visibilityOf(landmark.id, tree_.leaves().front());
   carried->observations = landmark.observations;
   carried->first_submap = landmark.first_submap;
   carried->last_submap = landmark.last_submap;
-  carried_.push_back(std::move(carried));
+  Existence existence;
+  existence.log_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
+  existence.visible_prob = visibilityOf(landmark.id, tree_.leaves().front());
+  carried_.push_back({std::move(carried), existence});
 }
 
 std::optional<Submap> Mapper::finish() {

@@ -85,12 +85,17 @@ void Mapper::transfer(StateArchive& archive) {
   archive(next_landmark_, index_, is_open_, begin_, end_, T_odom_submap_, T_odom_last_, length_m_);
   archive(T_submap_base_, rows_, keyframes_, T_odom_carried_, carried_offset_);
   std::vector<TrackedLandmark> carried;
-  for (const TrackedLandmarkPtr& landmark : carried_) carried.push_back(*landmark);
-  archive(carried);
+  std::vector<Existence> existence;
+  for (const HypothesisLandmark& landmark : carried_) {
+    carried.push_back(*landmark);
+    existence.push_back(landmark.existence);
+  }
+  archive(carried, existence);
   if (!archive.isReading()) return;
+  if (existence.size() != carried.size()) StateArchive::fail("landmarks without existence");
   carried_.clear();
-  for (TrackedLandmark& landmark : carried) {
-    carried_.push_back(std::make_shared<const TrackedLandmark>(std::move(landmark)));
+  for (std::size_t i = 0; i < carried.size(); ++i) {
+    carried_.push_back({std::make_shared<const TrackedLandmark>(std::move(carried[i])), existence[i]});
   }
 }
 

@@ -27,8 +27,13 @@ Measurement makeMeasurement(ClassIndex detected) {
   return measurement;
 }
 
+Measurement seenAs(ClassIndex object_class, const Measurement& measurement) {
+  Measurement changed;
+  return ofObject(measurement, object_class, changed);
+}
+
 TEST(ClassNoiseTest, ADetectionOfAWideObjectIsWideWhateverItIsCalled) {
-  const Measurement wide = ofObject(makeMeasurement(0), 1);
+  const Measurement wide = seenAs(1, makeMeasurement(0));
   const Measurement expected = makeMeasurement(1);
   EXPECT_TRUE(wide.cov_m2.isApprox(expected.cov_m2, 1e-12)) << wide.cov_m2;
   EXPECT_TRUE(wide.noise_stddev_m.isApprox(expected.noise_stddev_m, 1e-12));
@@ -38,15 +43,15 @@ TEST(ClassNoiseTest, ADetectionOfAWideObjectIsWideWhateverItIsCalled) {
 }
 
 TEST(ClassNoiseTest, ThereAndBackIsTheSame) {
-  const Measurement narrow = ofObject(makeMeasurement(1), 0);
+  const Measurement narrow = seenAs(0, makeMeasurement(1));
   EXPECT_TRUE(narrow.cov_m2.isApprox(makeMeasurement(0).cov_m2, 1e-12));
-  EXPECT_TRUE(ofObject(makeMeasurement(1), 1).cov_m2.isApprox(makeMeasurement(1).cov_m2, 1e-15));
+  EXPECT_TRUE(seenAs(1, makeMeasurement(1)).cov_m2.isApprox(makeMeasurement(1).cov_m2, 1e-15));
 }
 
 TEST(ClassNoiseTest, NoiseThatTheDetectorStatesStays) {
   Measurement stated = makeMeasurement(0);
   stated.noise_of_class.reset();
-  EXPECT_EQ(ofObject(stated, 1).cov_m2, stated.cov_m2);
+  EXPECT_EQ(seenAs(1, stated).cov_m2, stated.cov_m2);
 }
 
 }  // namespace

@@ -9,17 +9,18 @@
 namespace semantic_mht_slam {
 namespace {
 
-TrackedLandmarkPtr makeLandmark(LandmarkId id, const Eigen::Vector3d& mean, double variance, double log_odds) {
+HypothesisLandmark makeLandmark(LandmarkId id, const Eigen::Vector3d& mean, double variance, double log_odds) {
   auto landmark = std::make_shared<TrackedLandmark>();
   landmark->id = id;
   landmark->position = {mean, variance * Eigen::Matrix3d::Identity()};
   landmark->class_probs = ClassProbs::Constant(2, 0.5);
-  landmark->log_existence_odds = log_odds;
   landmark->observations = static_cast<int>(id);
-  return landmark;
+  Existence existence;
+  existence.log_odds = log_odds;
+  return {std::move(landmark), existence};
 }
 
-MapHypothesis makeLeaf(double weight, std::vector<TrackedLandmarkPtr> landmarks) {
+MapHypothesis makeLeaf(double weight, std::vector<HypothesisLandmark> landmarks) {
   MapHypothesis leaf;
   leaf.log_weight = std::log(weight);
   leaf.landmarks = std::move(landmarks);
@@ -62,7 +63,7 @@ TEST(FusionTest, ComponentsThatNearlyCoincideAreOneAndTheMomentsStay) {
 }
 
 TEST(FusionTest, HypothesesThatAgreeAreOneComponent) {
-  const TrackedLandmarkPtr shared = makeLandmark(3, {1.0, 2.0, 3.0}, 0.1, 0.0);
+  const HypothesisLandmark shared = makeLandmark(3, {1.0, 2.0, 3.0}, 0.1, 0.0);
   const auto fused = fuseHypotheses({makeLeaf(0.6, {shared}), makeLeaf(0.4, {shared})});
   ASSERT_EQ(fused.size(), 1U);
   EXPECT_FALSE(fused[0].isUndecided());

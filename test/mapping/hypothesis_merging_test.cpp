@@ -15,7 +15,7 @@ MapHypothesis makeLeaf(double weight, double x_m, const History& history) {
   landmark->position = {{x_m, 0.0, 0.0}, 0.04 * Eigen::Matrix3d::Identity()};
   MapHypothesis leaf;
   leaf.log_weight = std::log(weight);
-  leaf.landmarks = {landmark};
+  leaf.landmarks = {{landmark, {}}};
   for (std::size_t frame = 0; frame < history.size(); ++frame) {
     leaf.history = std::make_shared<AssociationRecord>(AssociationRecord{leaf.history, frame, history[frame]});
   }

@@ -14,16 +14,17 @@ namespace semantic_mht_slam {
 namespace {
 
 /// Landmarks so near each other that detections are ambiguous.
-std::vector<TrackedLandmarkPtr> makeLandmarks(Rng& rng, int count) {
-  std::vector<TrackedLandmarkPtr> landmarks;
+std::vector<HypothesisLandmark> makeLandmarks(Rng& rng, int count) {
+  std::vector<HypothesisLandmark> landmarks;
   for (int i = 0; i < count; ++i) {
     auto landmark = std::make_shared<TrackedLandmark>();
     landmark->id = static_cast<LandmarkId>(i + 1);
     landmark->position = {{rng.uniform(0.0, 12.0), rng.uniform(0.0, 12.0), 0.0}, 0.1 * Eigen::Matrix3d::Identity()};
     landmark->class_probs = ClassProbs::Constant(2, 0.5);
     landmark->observations = 1 + static_cast<int>(rng.index(5));
-    landmark->log_existence_odds = 2.0;
-    landmarks.push_back(landmark);
+    Existence existence;
+    existence.log_odds = 2.0;
+    landmarks.push_back({std::move(landmark), existence});
   }
   return landmarks;
 }
@@ -49,7 +50,7 @@ TreeInput makeInput(Rng& rng, std::size_t frame, int count) {
 std::map<LandmarkId, MixtureLandmark> run(std::uint64_t seed, bool is_reversed, std::size_t& hypotheses) {
   Rng rng(seed);
   MultiHypothesisTree tree({}, makeTable());
-  std::vector<TrackedLandmarkPtr> landmarks = makeLandmarks(rng, 30);
+  std::vector<HypothesisLandmark> landmarks = makeLandmarks(rng, 30);
   if (is_reversed) std::reverse(landmarks.begin(), landmarks.end());
   tree.restart(landmarks);
   Rng tree_rng(7);

@@ -17,15 +17,16 @@ inline ClassTable makeTable() {
 }
 
 /// A well-known pole, id 1, class 0.
-inline TrackedLandmarkPtr makePole(double x_m, int observations) {
+inline HypothesisLandmark makePole(double x_m, int observations) {
   auto pole = std::make_shared<TrackedLandmark>();
   pole->id = 1;
   pole->position = {Eigen::Vector3d(x_m, 0.0, 0.0), 0.01 * Eigen::Matrix3d::Identity()};
   pole->class_probs = ClassProbs::Zero(2);
   pole->class_probs << 0.99, 0.01;
   pole->observations = observations;
-  pole->log_existence_odds = 5.0;
-  return pole;
+  Existence existence;
+  existence.log_odds = 5.0;
+  return {std::move(pole), existence};
 }
 
 /// Of class 0, 0.2 m off and, if it is an outlier, 0.6 m more.

@@ -29,7 +29,8 @@ Gaussian3 updatedPole(MeasurementModel model, bool is_outlier, bool is_pose_unce
   Candidate candidate;
   candidate.is_outlier = is_outlier;
   const LandmarkTracking tracking(config, table);
-  return tracking.updated(AssociationModel(config, table), *makePole(10.0, 5), measurement, {}, candidate)->position;
+  return tracking.updated(AssociationModel(config, table), makePole(10.0, 5), measurement, {}, candidate, 0.9)
+      ->position;
 }
 
 TEST(LandmarkTrackingTest, BothMeasurementModelsWeighNoiseOutliersAndPoseAlike) {

@@ -79,5 +79,20 @@ TEST(SecondPartsTest, ASecondPartIsNoLandmarkAndCountsAsAFalsePositive) {
   EXPECT_EQ(leafOfTwoParts(1.0, 6.0).false_positives, 0);
 }
 
+TEST(SecondPartsTest, WhichOfTwoDetectionsIsTheSecondPartIsNoBranch) {
+  MapperConfig config;
+  config.tree.min_weight = 0.0;
+  config.tree.branch_log_ratio = 100.0;
+  MultiHypothesisTree tree(config, makeTable());
+  tree.restart({makePole(10.0, 20)});
+  Rng rng(1);
+  tree.step(makeInputOf({makeMeasurement({10.1, 0.0, 0.0}, 100), makeMeasurement({9.9, 0.0, 0.0}, 101)}), rng);
+  int both = 0;
+  for (const MapHypothesis& leaf : tree.leaves()) {
+    both += leaf.history->landmark_of_measurement == std::vector<LandmarkId>{1, 1};
+  }
+  EXPECT_EQ(both, 1);
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

@@ -107,8 +107,9 @@ TEST(SlamStateErrorTest, BrokenStatesAreRefusedWithAReason) {
     state.sections[i].bytes.push_back('x');
     expectInputError([&] { Slam(config, classes, state); }, {"1 bytes too many"});
     state = good;
-    ++state.sections[i].version;
-    expectInputError([&] { Slam(config, classes, state); }, {"section '" + good.sections[i].name, "has version 2"});
+    const int newer = ++state.sections[i].version;
+    expectInputError([&] { Slam(config, classes, state); },
+                     {"section '" + good.sections[i].name, "has version " + std::to_string(newer)});
     state = good;
     state.sections.erase(state.sections.begin() + static_cast<std::ptrdiff_t>(i));
     expectInputError([&] { Slam(config, classes, state); }, {good.sections[i].name, "missing"});

@@ -17,6 +17,13 @@ inline double logSumExp(const std::vector<double>& values) {
   return largest + std::log(sum);
 }
 
+/// log(exp(a) + exp(b)) without overflow.
+inline double logAdd(double a, double b) {
+  const double larger = std::max(a, b);
+  if (!std::isfinite(larger)) return larger;
+  return larger + std::log1p(std::exp(std::min(a, b) - larger));
+}
+
 /// log(p / (1 - p)).
 inline double logit(double prob) {
   return std::log(prob) - std::log1p(-prob);

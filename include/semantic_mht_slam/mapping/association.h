@@ -14,8 +14,7 @@ namespace semantic_mht_slam {
 struct Candidate {
   int landmark = 0;             ///< index in the hypothesis
   double log_likelihood = 0.0;  ///< log N(p; pi, P + Sigma) + log P(c | class probabilities), 1/m^3
-  double mahalanobis_sq = 0.0;
-  bool is_outlier = false;  ///< better explained by a centroid that is far off
+  bool is_outlier = false;      ///< better explained by a centroid that is far off
   /// As `log_likelihood`, of a part of the object, whose centroid is far off.
   double log_part_likelihood = 0.0;
 };
@@ -29,17 +28,16 @@ struct AssociationProblem {
   int landmarks = 0;
   int measurements = 0;
 
-  /// A landmark near enough to the measurements to be a candidate of any; side by side, as each is looked at for each.
+  /// A landmark near enough to the measurements to be a candidate of any.
   struct Reachable {
     double x_m;
     double y_m;
     int landmark;
   };
-  std::vector<Reachable> reachable;
+  std::vector<Reachable> reachable;  ///< by rising x
 
   bool isLandmark(int column) const { return column < landmarks; }
   bool isNew(int column) const { return column >= landmarks && column < landmarks + measurements; }
-  bool isFalsePositive(int column) const { return column >= landmarks + measurements; }
 
   /// The candidate of a measurement behind a landmark column; nullptr if it is outside the gate.
   const Candidate* candidate(int measurement, int landmark) const;
@@ -85,8 +83,11 @@ class AssociationModel {
   void collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
                          const std::vector<AssociationProblem::Reachable>& reachable,
                          std::vector<Candidate>& candidates) const;
+  bool isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
+                           const Eigen::Vector3d& d) const;
+  /// Fills all of a candidate but the landmark and what its class says; false: outside the gate.
   bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2, const Eigen::Vector3d& d,
-                       Candidate& candidate, double& log_density) const;
+                       Candidate& candidate) const;
   double logCountPrior(int observations) const;
   void addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const;
   void addLikelihoodCosts(AssociationProblem& problem) const;
@@ -100,6 +101,8 @@ class AssociationModel {
   std::vector<double> transition_variance_m2_;
   double log_uniform_density_;
   double log_false_positives_;
+  double log_inlier_prob_;
+  double log_outlier_prob_;  ///< -infinity: no centroids are far off
   double gate_mahalanobis_sq_;
 };
 

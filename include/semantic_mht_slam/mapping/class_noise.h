@@ -15,9 +15,18 @@ struct ClassNoise {
   double wander_variance_per_m = 0.0;                  ///< growth with the distance driven
 };
 
-/// The measurement with the noise that it has if it shows an object of a class other than the detected one: how far a
-/// centroid is off depends on what it is the centroid of (a bush that is called a trunk is as wide as ever). A
-/// measurement whose noise was stated by the detector stays as it is.
-Measurement ofObject(const Measurement& measurement, ClassIndex object_class);
+/// What the noise of a measurement is if it shows an object of a class other than the detected one: how far a centroid
+/// is off depends on what it is the centroid of (a bush that is called a trunk is as wide as ever). Noise that was
+/// stated by the detector stays as it is.
+struct ObjectNoise {
+  Eigen::Matrix3d cov_m2;
+  Eigen::Vector3d outlier_variance_m2;
+  double wander_variance_per_m;
+};
+
+ObjectNoise noiseOfObject(const Measurement& measurement, ClassIndex object_class);
+
+/// The measurement with that noise. Returns `measurement` itself, or `changed` after filling it.
+const Measurement& ofObject(const Measurement& measurement, ClassIndex object_class, Measurement& changed);
 
 }  // namespace semantic_mht_slam

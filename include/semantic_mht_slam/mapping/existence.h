@@ -13,11 +13,11 @@ namespace semantic_mht_slam {
 double predictedVisibility(double visible_prob, double switch_prob);
 
 /// After a frame in which the landmark was in range and not detected. Returns the likelihood of the miss if it exists.
-double applyMiss(TrackedLandmark& landmark, double detection_prob, double switch_prob);
+double applyMiss(Existence& existence, double detection_prob, double switch_prob);
 
 /// After a detection; `log_density_ratio` is log of the detection's density at the landmark over that of clutter.
 /// The odds stay below `max_log_odds`.
-void applyHit(TrackedLandmark& landmark, double detection_prob, double switch_prob, double log_density_ratio,
+void applyHit(Existence& existence, double detection_prob, double switch_prob, double log_density_ratio,
               double max_log_odds);
 
 }  // namespace semantic_mht_slam

@@ -40,21 +40,25 @@ struct TreeInput {
   std::vector<Measurement> measurements;  ///< base frame, covariance of the detector
 };
 
-/// What one hypothesis believes of one landmark. Shared between hypotheses until it changes.
+/// Whether a landmark exists, by the frames that showed it and those that should have.
+struct Existence {
+  double log_odds = 0.0;         ///< a real object against clutter
+  double visible_prob = 1.0;     ///< that it is not hidden, if it exists
+  double miss_likelihood = 1.0;  ///< of all frames that did not show it though it is expected
+};
+
+/// What one hypothesis knows of one landmark by its detections.
 struct TrackedLandmark {
   LandmarkId id = kNoLandmark;
   Gaussian3 position;  ///< submap frame
   ClassProbs class_probs;
-  double log_existence_odds = 0.0;  ///< a real object against clutter, by hits and misses
-  double visible_prob = 1.0;        ///< that it is not hidden, if it exists
   int observations = 0;
   bool is_from_earlier_submap = false;  ///< case (ii): not seen in this submap so far
   int first_submap = 0;
   int last_submap = 0;
-  double updated_at_m = 0.0;     ///< distance driven in the submap when it was last seen
-  int earlier = -1;              ///< the landmark of the earlier map that it is; -1: none known
-  double miss_likelihood = 1.0;  ///< of all frames that did not show it though it is expected
-  bool is_expected = false;  ///< only the earlier map has it so far; its place follows the hypothesis's `map_offset`
+  double updated_at_m = 0.0;  ///< distance driven in the submap when it was last seen
+  int earlier = -1;           ///< the landmark of the earlier map that it is; -1: none known
+  bool is_expected = false;   ///< only the earlier map has it so far; its place follows the hypothesis's `map_offset`
 
   ClassIndex mostLikelyClass() const {
     Eigen::Index best = 0;
@@ -63,20 +67,22 @@ struct TrackedLandmark {
   }
 };
 
-using TrackedLandmarkPtr = std::shared_ptr<const TrackedLandmark>;
+/// A landmark as one hypothesis has it. What its detections tell is shared between hypotheses until the next one; its
+/// existence changes with every frame that does not show it.
+struct HypothesisLandmark {
+  std::shared_ptr<const TrackedLandmark> tracked;
+  Existence existence;
 
-/// Where the landmark with an id stands in a list by rising id, or would stand; null if the list does not have it.
-struct LandmarkPlace {
-  std::vector<TrackedLandmarkPtr>::const_iterator place;
-  const TrackedLandmark* landmark = nullptr;
+  const TrackedLandmark& operator*() const { return *tracked; }
+  const TrackedLandmark* operator->() const { return tracked.get(); }
 };
 
-inline LandmarkPlace findLandmark(const std::vector<TrackedLandmarkPtr>& landmarks, LandmarkId id) {
+/// The landmark with an id in a list by rising id; null if the list lacks it.
+inline const HypothesisLandmark* findLandmark(LandmarkId id, const std::vector<HypothesisLandmark>& landmarks) {
   const auto place =
       std::lower_bound(landmarks.begin(), landmarks.end(), id,
-                       [](const TrackedLandmarkPtr& known, LandmarkId wanted) { return known->id < wanted; });
-  const bool is_known = place != landmarks.end() && (*place)->id == id;
-  return {place, is_known ? place->get() : nullptr};
+                       [](const HypothesisLandmark& known, LandmarkId wanted) { return known->id < wanted; });
+  return place == landmarks.end() || (*place)->id != id ? nullptr : &*place;
 }
 
 /// Which landmark each measurement of a frame went to, with the frames before: a list that branches share.
@@ -88,11 +94,11 @@ struct AssociationRecord {
 
 /// A leaf of the hypothesis tree: a map, and the associations that led to it.
 struct MapHypothesis {
-  std::uint64_t id = 0;
+  std::uint64_t id = 0;         ///< kept while it has one child
   std::uint64_t parent_id = 0;  ///< the hypothesis that it branched from
   std::size_t born_frame = 0;
   double log_weight = 0.0;                    ///< normalised over the leaves
-  std::vector<TrackedLandmarkPtr> landmarks;  ///< by rising id
+  std::vector<HypothesisLandmark> landmarks;  ///< by rising id
   std::shared_ptr<const AssociationRecord> history;
   int false_positives = 0;  ///< N^0 of the paper
   PoseOffset offset;        ///< of the odometry in this submap
@@ -102,5 +108,13 @@ struct MapHypothesis {
   int expected_found = 0;        ///< expected landmarks that were seen
   double expected_missed = 0.0;  ///< expected number of those that should have been seen by now and were not
 };
+
+/// A copy of all but the landmarks.
+inline MapHypothesis withoutLandmarks(const MapHypothesis& hypothesis) {
+  const auto& [id, parent_id, born_frame, log_weight, landmarks, history, false_positives, offset, map_offset,
+               expected_found, expected_missed] = hypothesis;
+  return {id,     parent_id,  born_frame,     log_weight,     {}, history, false_positives,
+          offset, map_offset, expected_found, expected_missed};
+}
 
 }  // namespace semantic_mht_slam

@@ -8,6 +8,7 @@
 namespace semantic_mht_slam {
 
 void transfer(StateArchive& archive, PoseOffset& offset);
+void transfer(StateArchive& archive, Existence& existence);
 void transfer(StateArchive& archive, TrackedLandmark& landmark);
 
 /// The leaves of a tree. What they share (landmarks, the beginnings of their histories) is written once and shared

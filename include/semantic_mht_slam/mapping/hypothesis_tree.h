@@ -5,6 +5,7 @@
 #include "semantic_mht_slam/common/k_best_assignment.h"
 #include "semantic_mht_slam/common/random.h"
 #include "semantic_mht_slam/mapping/association.h"
+#include "semantic_mht_slam/mapping/frame_interpretation.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/landmark_tracking.h"
 #include "semantic_mht_slam/mapping/map_branching.h"
@@ -20,7 +21,7 @@ class MultiHypothesisTree {
   MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes);
 
   /// Starts again from one hypothesis, in surroundings that an earlier map may show.
-  void restart(std::vector<TrackedLandmarkPtr> landmarks, EarlierMap earlier_map = {});
+  void restart(std::vector<HypothesisLandmark> landmarks, EarlierMap earlier_map = {});
 
   /// Grows every leaf by its likely assignments, weighs, merges, drops and resamples.
   void step(const TreeInput& input, Rng& rng);
@@ -44,23 +45,20 @@ class MultiHypothesisTree {
   void predict(MapHypothesis& hypothesis, const TreeInput& input) const;
   void measureFrom(const Pose& T_submap_base, const PoseOffset* offset, const TreeInput& input,
                    std::vector<Measurement>& measurements) const;
-  PoseOffset offsetAfter(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
-                         int choice) const;
-  struct Growth;
-  void expand(MapHypothesis& parent, const TreeInput& input, std::vector<MapHypothesis>& children);
-  MapHypothesis makeChild(const MapHypothesis& parent, const TreeInput& input, const AssignmentList& assignments,
-                          int choice);
-  void assign(int measurement, int column, const MapHypothesis& parent, const TreeInput& input, Growth& growth) const;
-  int splitOf(const MapHypothesis& parent, int measurement, const std::vector<char>& is_seen) const;
+  PoseOffset offsetAfter(const FrameInterpretation& interpretation, const TreeInput& input) const;
+  void expand(std::size_t leaf, const TreeInput& input, std::vector<FrameInterpretation>& interpretations);
+  std::vector<MapHypothesis> makeChildren(const std::vector<FrameInterpretation>& interpretations,
+                                          const TreeInput& input);
+  /// The last child takes the landmarks of its parent, the others copy them.
+  MapHypothesis makeChild(const FrameInterpretation& interpretation, const TreeInput& input, bool is_last);
+  void trackLandmarks(const FrameInterpretation& interpretation, const TreeInput& input, MapHypothesis& child) const;
 
   MapperConfig config_;
   AssociationModel model_;
   LandmarkTracking tracking_;
   MapBranching branching_;
-  int class_count_;
   KBestSolver solver_;
-  AssociationProblem problem_;
-  std::vector<Measurement> measurements_;  ///< submap frame, predicted pose, with the pose's uncertainty
+  std::vector<LeafExpansion> expansions_;  ///< of each leaf
   std::vector<Measurement> corrected_;     ///< submap frame, corrected pose
   std::vector<MapHypothesis> leaves_;
   std::uint64_t next_hypothesis_id_ = 1;

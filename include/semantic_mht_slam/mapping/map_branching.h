@@ -12,12 +12,13 @@
 
 namespace semantic_mht_slam {
 
+class EarlierMapPlacement;
 class StateArchive;
 
-/// Log evidence of what a hypothesis expected by the earlier map and found or missed. The share of the earlier
-/// landmarks that can be seen from this pass is not known and common to all (uniform prior): many may be hidden
-/// together, or stand in another street.
-double logExpectationEvidence(const MapHypothesis& hypothesis);
+/// Log evidence of what a hypothesis expected by the earlier map and found, and of the expected number of what it
+/// should have found and did not. The share of the earlier landmarks that can be seen from this pass is not known and
+/// common to all (uniform prior): many may be hidden together, or stand in another street.
+double logExpectationEvidence(int found, double missed);
 
 /// The end of a submap's comparison with the earlier map.
 struct MapConclusion {
@@ -39,13 +40,14 @@ class MapBranching {
 
   /// If it is time: aligns the landmarks of the likeliest leaf, and makes of every leaf one child for each likely
   /// alignment beside the leaf itself, which stands for "not here before". `leaves` comes with the likeliest first;
-  /// weights are to be normalised afterwards. True if there are new leaves.
-  bool branch(const TreeInput& input, std::uint64_t& next_hypothesis_id, std::vector<MapHypothesis>& leaves);
+  /// weights are to be normalised afterwards. Children whose share of all weight is below exp(`log_min_weight`) are not
+  /// made. True if the landmarks fit somewhere.
+  bool branch(const TreeInput& input, double log_min_weight, std::uint64_t& next_hypothesis_id,
+              std::vector<MapHypothesis>& leaves);
 
-  /// The offset after detections of expected landmarks. `seen` are places in `parent.landmarks` with the measurement
-  /// (submap frame, corrected pose) that went there. Moves the expected landmarks of `child`.
-  void follow(const MapHypothesis& parent, const std::vector<std::pair<std::size_t, const Measurement*>>& seen,
-              MapHypothesis& child) const;
+  /// Moves the offset of `leaf`, and the landmarks that it expects, after detections of expected landmarks. `seen` are
+  /// indices in the earlier map with the measurement (submap frame, corrected pose) that went there.
+  void follow(const std::vector<std::pair<int, const Measurement*>>& seen, MapHypothesis& leaf) const;
 
   /// The alignment on which most weight agrees, from all landmarks of the submap; empty if no leaf has one. `leaves`
   /// are normalised.
@@ -65,16 +67,15 @@ class MapBranching {
   std::vector<AlignmentHypothesis> align(const std::vector<const TrackedLandmark*>& landmarks,
                                          const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const;
   Matches matchesOf(const AlignmentHypothesis& mode, const std::vector<LandmarkId>& ids) const;
-  MapHypothesis aligned(const MapHypothesis& leaf, const AlignmentHypothesis& mode, const Matches& matches,
+  MapHypothesis aligned(const MapHypothesis& leaf, const PoseOffset& offset, Matches matches,
                         const TreeInput& input) const;
-  void matchTheRest(const MapHypothesis& leaf, const PoseOffset& offset, Matches& matches) const;
-  TrackedLandmarkPtr expected(int earlier, const PoseOffset& offset, const TreeInput& input) const;
-  Gaussian3 placed(int earlier, const PoseOffset& offset) const;
+  void matchTheRest(const MapHypothesis& leaf, const EarlierMapPlacement& placement, Matches& matches) const;
+  EarlierMapPlacement placementBy(const PoseOffset& offset) const;
   double agreeingWeight(const std::vector<MapHypothesis>& leaves, const PoseOffset& offset, double log_evidence) const;
 
   MapAlignmentConfig config_;
   ClassTable classes_;
-  EarlierMap map_;
+  EarlierMap map_;                      ///< landmarks by rising id
   std::map<LandmarkId, int> index_of_;  ///< of the earlier landmarks
   double next_attempt_m_ = 0.0;
   mutable std::vector<int> earlier_of_point_;  ///< of the points that were aligned last

@@ -71,7 +71,7 @@ class Mapper {
   void begin(Stamp stamp, const Pose& T_odom_base);
   Measurement makeMeasurement(const Detection& detection);
   std::shared_ptr<const std::vector<ClassNoise>> noiseOfClasses(double range_m);
-  std::vector<TrackedLandmarkPtr> propagated(const Pose& T_new_old) const;
+  std::vector<HypothesisLandmark> propagated(const Pose& T_new_old) const;
   void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
   void joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const;
   void carry(const MixtureLandmark& landmark);
@@ -101,7 +101,7 @@ class Mapper {
   std::vector<Pose> T_submap_base_;     ///< of each frame of this submap, by the odometry
   std::vector<std::vector<int>> rows_;  ///< of the measurements of each frame of this submap
   std::vector<Keyframe> keyframes_;
-  std::vector<TrackedLandmarkPtr> carried_;  ///< landmarks that go on into the next submap, old submap frame
+  std::vector<HypothesisLandmark> carried_;  ///< landmarks that go on into the next submap, old submap frame
   Pose T_odom_carried_;
   PoseOffset carried_offset_;
 };
