@@ -71,12 +71,15 @@ std::vector<double> classDensities(const AlignmentProblem& problem, int class_co
                                    const JointAlignmentConfig& config) {
   std::vector<int> detections(class_count, 0);
   std::vector<int> neighbours(class_count, 0);
+  std::vector<std::size_t> begin(class_count + 1, 0);  // of each class's landmarks, which are sorted by class
+  for (const LevelledPoint& landmark : problem.landmarks) ++begin[landmark.class_index + 1];
+  for (int c = 0; c < class_count; ++c) begin[c + 1] += begin[c];
   for (const LevelledPoint& detection : problem.detections) {
-    ++detections[detection.class_index];
-    for (const LevelledPoint& landmark : problem.landmarks) {
-      if (landmark.class_index != detection.class_index) continue;
-      const double distance_sq = (landmark.position_m - detection.position_m).head<2>().squaredNorm();
-      if (distance_sq < config.density_radius_m * config.density_radius_m) ++neighbours[detection.class_index];
+    const int c = detection.class_index;
+    ++detections[c];
+    for (std::size_t l = begin[c]; l < begin[c + 1]; ++l) {
+      const double distance_sq = (problem.landmarks[l].position_m - detection.position_m).head<2>().squaredNorm();
+      if (distance_sq < config.density_radius_m * config.density_radius_m) ++neighbours[c];
     }
   }
   const double volume_m3 = M_PI * config.density_radius_m * config.density_radius_m * config.density_height_m;

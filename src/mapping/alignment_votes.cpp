@@ -94,7 +94,7 @@ class VoteGrid {
 
  private:
   static constexpr int kMargin = 1;
-  static constexpr int kStretch = 16;
+  static constexpr int kStretch = 32;
 
   double yaw(int layer) const { return (layer - half_turns_) * yaw_step_rad_; }
   std::size_t cellOf(int y, int x) const { return static_cast<std::size_t>(y) * side_ + x; }

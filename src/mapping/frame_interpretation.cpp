@@ -29,6 +29,7 @@ FrameInterpreter::FrameInterpreter(const MapperConfig& config, const Association
     log_all_missed_ += outlook.log_missed;
     all_expected_missed_ += outlook.expected_missed;
   }
+  if (leaf.map_offset) log_expectation_ = logExpectationEvidence(leaf.expected_found, leaf.expected_missed);
 }
 
 FrameInterpretation FrameInterpreter::interpret(const AssignmentList& assignments, int choice) {
@@ -99,8 +100,8 @@ void FrameInterpreter::weighLandmarks(FrameInterpretation& interpretation) const
     interpretation.expected_missed -= outlook.expected_missed + 1.0 - leaf_.landmarks[j].existence.miss_likelihood;
   }
   if (!leaf_.map_offset) return;
-  interpretation.log_weight += logExpectationEvidence(interpretation.expected_found, interpretation.expected_missed) -
-                               logExpectationEvidence(leaf_.expected_found, leaf_.expected_missed);
+  interpretation.log_weight +=
+      logExpectationEvidence(interpretation.expected_found, interpretation.expected_missed) - log_expectation_;
 }
 
 void addInterpretation(FrameInterpretation interpretation, std::vector<FrameInterpretation>& interpretations) {

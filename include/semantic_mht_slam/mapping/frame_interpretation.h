@@ -59,6 +59,7 @@ class FrameInterpreter {
   const LeafExpansion& expansion_;
   double log_all_missed_ = 0.0;       ///< log-likelihood of detecting no landmark
   double all_expected_missed_ = 0.0;  ///< what that adds to the number of expected ones that were missed
+  double log_expectation_ = 0.0;      ///< evidence of what the leaf expected until now
   std::vector<char> is_seen_;         ///< each landmark of the leaf, in the present assignment
 };
 
