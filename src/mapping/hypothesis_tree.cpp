@@ -189,7 +189,7 @@ void MultiHypothesisTree::trackLandmarks(const FrameInterpretation& interpretati
   }
   std::sort(first_seen.begin(), first_seen.end(), [](const auto& a, const auto& b) { return a->id < b->id; });
   std::move(first_seen.begin(), first_seen.end(), std::back_inserter(landmarks));
-  if (!found.empty()) branching_.follow(found, child);
+  branching_.follow(found, child);
 }
 
 }  // namespace semantic_mht_slam

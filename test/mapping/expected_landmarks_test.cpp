@@ -45,12 +45,18 @@ MultiHypothesisTree makeRevisit() {
   return tree;
 }
 
-TEST(ExpectedLandmarksTest, WhatAnEarlierPassSawOftenIsExpectedWhereTheOffsetPutsIt) {
+/// The same after a frame without detections, which is the time for an alignment.
+MultiHypothesisTree makeAlignedRevisit(Rng& rng) {
   MultiHypothesisTree tree = makeRevisit();
-  Rng rng(1);
   TreeInput input = makeInputOf({});
   input.driven_m = 10.0;
   tree.step(input, rng);
+  return tree;
+}
+
+TEST(ExpectedLandmarksTest, WhatAnEarlierPassSawOftenIsExpectedWhereTheOffsetPutsIt) {
+  Rng rng(1);
+  MultiHypothesisTree tree = makeAlignedRevisit(rng);
   const MapHypothesis& leaf = tree.leaves().front();
   ASSERT_TRUE(leaf.map_offset);
   EXPECT_NEAR(leaf.map_offset->mean.y(), 1.0, 0.1);
@@ -65,13 +71,10 @@ TEST(ExpectedLandmarksTest, WhatAnEarlierPassSawOftenIsExpectedWhereTheOffsetPut
 }
 
 TEST(ExpectedLandmarksTest, WhenSeenTheyBecomeLandmarksOfTheSubmapAndTheOffsetLearns) {
-  MultiHypothesisTree tree = makeRevisit();
   Rng rng(1);
-  TreeInput input = makeInputOf({});
-  input.driven_m = 10.0;
-  tree.step(input, rng);
+  MultiHypothesisTree tree = makeAlignedRevisit(rng);
   const double variance_m2 = tree.leaves().front().map_offset->cov(1, 1);
-  input = makeInputOf({makeMeasurement({30.0, 2.0, 0.0}, 500)}, 1);
+  TreeInput input = makeInputOf({makeMeasurement({30.0, 2.0, 0.0}, 500)}, 1);
   input.driven_m = 10.5;
   tree.step(input, rng);
   const MapHypothesis& leaf = tree.leaves().front();
