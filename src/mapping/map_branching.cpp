@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include <Eigen/Geometry>
@@ -46,8 +48,12 @@ void MapBranching::restart(EarlierMap map) {
   std::sort(map_.landmarks.begin(), map_.landmarks.end(),
             [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
   next_attempt_m_ = config_.first_m;
-  index_of_.clear();
-  for (std::size_t i = 0; i < map_.landmarks.size(); ++i) index_of_[map_.landmarks[i].id] = static_cast<int>(i);
+}
+
+const MixtureLandmark& MapBranching::landmark(LandmarkId id) const {
+  const MixtureLandmark* known = findLandmark(id, map_.landmarks);
+  if (known == nullptr) throw std::out_of_range("the earlier map has no landmark " + std::to_string(id));
+  return *known;
 }
 
 std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const TrackedLandmark*>& landmarks,
@@ -263,7 +269,7 @@ std::optional<MapConclusion> MapBranching::conclude(const std::vector<MapHypothe
   matchTheRest(*best, placementBy(offset), matches);
   for (const auto& [id, earlier] : matches) {
     const LandmarkId survivor = map_.landmarks[static_cast<std::size_t>(earlier)].id;
-    if (id != survivor && index_of_.count(id) == 0) result.merged.push_back({id, survivor});
+    if (id != survivor && findLandmark(id, map_.landmarks) == nullptr) result.merged.push_back({id, survivor});
   }
   return result;
 }

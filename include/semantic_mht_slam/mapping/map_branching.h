@@ -57,9 +57,7 @@ class MapBranching {
   void transfer(StateArchive& archive);
 
   /// The landmark of the earlier map with an id that it has. Throws std::out_of_range for others.
-  const MixtureLandmark& landmark(LandmarkId id) const {
-    return map_.landmarks.at(static_cast<std::size_t>(index_of_.at(id)));
-  }
+  const MixtureLandmark& landmark(LandmarkId id) const;
 
  private:
   using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap
@@ -75,8 +73,7 @@ class MapBranching {
 
   MapAlignmentConfig config_;
   ClassTable classes_;
-  EarlierMap map_;                      ///< landmarks by rising id
-  std::map<LandmarkId, int> index_of_;  ///< of the earlier landmarks
+  EarlierMap map_;  ///< landmarks by rising id
   double next_attempt_m_ = 0.0;
   mutable std::vector<int> earlier_of_point_;  ///< of the points that were aligned last
 };
