@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -13,11 +14,12 @@ namespace {
 constexpr int kRobustPasses = 2;
 constexpr double kCauchySigma = 2.0;
 constexpr int kPoseSize = 4;  // x, y, z, heading
-constexpr int kEntries = 8;   // pose, two knots of the range bias, two of the height bias
+constexpr int kEntries = 8;   // two knots of the range bias, two of the height bias, pose
+constexpr int kPoseEntry = kEntries - kPoseSize;
 constexpr double kMinRange_m = 1.0;
 constexpr double kGaugeStddev = 1e-3;
 
-/// An equation: landmark = point + J x, with the weight of its 3x3 information.
+/// An equation: landmark = point + J x, with the weight of its 3x3 information. Unknowns by rising index.
 struct Row {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
   std::array<int, kEntries> index{};
@@ -29,7 +31,7 @@ struct Row {
 using LandmarkRows = std::vector<std::vector<Row>>;
 
 /// Equations in unknowns x: the coefficients first, then scale, direction and slope of this stretch, then the error of
-/// each keyframe's pose.
+/// each keyframe's pose. Of matrices, which are symmetric, only the lower triangle is filled.
 class StretchEquations {
  public:
   StretchEquations(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise)
@@ -40,27 +42,31 @@ class StretchEquations {
 
   bool isEmpty() const { return landmarks_.empty(); }
 
-  /// Weighs the rows by their residuals under the best solution so far.
-  void reweigh(const BiasInformation& prior) {
+  /// Weighs the rows by their residuals under the best solution so far. False if numbers too far apart leave none.
+  bool reweigh(const BiasInformation& prior) {
     BiasInformation all = normalEquations();
     all.matrix.topLeftCorner(layout_.size(), layout_.size()) += prior.matrix;
     all.vector.head(layout_.size()) += prior.vector;
-    const Eigen::VectorXd x = all.matrix.ldlt().solve(all.vector);
+    const Eigen::LLT<Eigen::MatrixXd> factor(all.matrix);
+    if (factor.info() != Eigen::Success) return false;
+    const Eigen::VectorXd x = factor.solve(all.vector);
     for (std::vector<Row>& rows : landmarks_) reweigh(rows, x);
+    return true;
   }
 
-  /// What is known of the coefficients without any prior on them.
-  BiasInformation marginal() const {
+  /// What is known of the coefficients without any prior on them; empty as above.
+  std::optional<BiasInformation> marginal() const {
     const BiasInformation all = normalEquations();
     const int m = layout_.size();
     const int n = size_ - m;
-    const Eigen::LDLT<Eigen::MatrixXd> factor(all.matrix.bottomRightCorner(n, n));
-    const Eigen::MatrixXd cross = all.matrix.topRightCorner(m, n);
-    const Eigen::MatrixXd gain = factor.solve(cross.transpose()).transpose();
+    const Eigen::LLT<Eigen::MatrixXd> factor(all.matrix.bottomRightCorner(n, n));
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    const Eigen::MatrixXd whitened = factor.matrixL().solve(all.matrix.bottomLeftCorner(n, m));
     BiasInformation result;
-    result.matrix = all.matrix.topLeftCorner(m, m) - gain * cross.transpose();
-    result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
-    result.vector = all.vector.head(m) - gain * all.vector.tail(n);
+    result.matrix = all.matrix.topLeftCorner(m, m);
+    result.matrix.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose(), -1.0);
+    result.matrix.triangularView<Eigen::StrictlyUpper>() = result.matrix.transpose();
+    result.vector = all.vector.head(m) - whitened.transpose() * factor.matrixL().solve(all.vector.tail(n));
     return result;
   }
 
@@ -108,17 +114,17 @@ class StretchEquations {
     Row result;
     result.point_m = lever_m + T.translation_m;
     result.information = (R * observation.cov_m2 * R.transpose()).inverse();
-    for (int i = 0; i < kPoseSize; ++i) result.index[i] = pose(observation.keyframe) + i;
-    result.J.leftCols<3>().setIdentity();
-    result.J.col(3) << -lever_m.y(), lever_m.x(), 0.0;
+    for (int i = 0; i < kPoseSize; ++i) result.index[kPoseEntry + i] = pose(observation.keyframe) + i;
+    result.J.middleCols<3>(kPoseEntry).setIdentity();
+    result.J.col(kPoseEntry + 3) << -lever_m.y(), lever_m.x(), 0.0;
     const BiasBasis basis = biasBasis(range_m);
     for (int k = 0; k < 2; ++k) {
       const int knot = std::min(basis.knot + k, BiasLayout::kRangeKnots - 1);
       const double share = k == 0 ? basis.near_share : basis.far_share;
-      result.index[4 + k] = layout_.range(observation.class_index, knot);
-      result.J.col(4 + k) = -share * sight;
-      result.index[6 + k] = layout_.height(observation.class_index, std::max(knot, 1));
-      if (knot > 0) result.J.col(6 + k) = -share * R.col(2);
+      result.index[k] = layout_.range(observation.class_index, knot);
+      result.J.col(k) = -share * sight;
+      result.index[2 + k] = layout_.height(observation.class_index, std::max(knot, 1));
+      if (knot > 0) result.J.col(2 + k) = -share * R.col(2);
     }
     return result;
   }
@@ -130,20 +136,22 @@ class StretchEquations {
     return all;
   }
 
+  /// By rising index.
+  static std::vector<int> unknownsOf(const std::vector<Row>& rows) {
+    std::vector<int> unknowns;
+    for (const Row& row : rows) unknowns.insert(unknowns.end(), row.index.begin(), row.index.end());
+    std::sort(unknowns.begin(), unknowns.end());
+    unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
+    return unknowns;
+  }
+
   /// The equations of one landmark, its position eliminated.
   void addLandmark(const std::vector<Row>& rows, BiasInformation& all) const {
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    std::vector<int> used;  // unknowns, without the many that it has nothing to do with
     std::vector<int> place(static_cast<std::size_t>(size_), -1);  // of each unknown in `used`
-    for (const Row& row : rows) {
-      for (const int index : row.index) {
-        int& known = place[static_cast<std::size_t>(index)];
-        if (known >= 0) continue;
-        known = static_cast<int>(used.size());
-        used.push_back(index);
-      }
-    }
+    const std::vector<int> used = unknownsOf(rows);               // without the many that it has nothing to do with
+    for (std::size_t i = 0; i < used.size(); ++i) place[static_cast<std::size_t>(used[i])] = static_cast<int>(i);
     const auto count = static_cast<Eigen::Index>(used.size());
     Eigen::Matrix<double, Eigen::Dynamic, 3> cross = Eigen::MatrixXd::Zero(count, 3);
     const Eigen::Vector3d origin_m = rows.front().point_m;  // keeps the numbers small
@@ -156,15 +164,16 @@ class StretchEquations {
       for (int a = 0; a < kEntries; ++a) {
         cross.row(place[static_cast<std::size_t>(row.index[a])]) += JtW.row(a);
         all.vector[row.index[a]] -= JtWd[a];
-        for (int b = 0; b < kEntries; ++b) all.matrix(row.index[a], row.index[b]) += JtWJ(a, b);
+        for (int b = 0; b <= a; ++b) all.matrix(row.index[a], row.index[b]) += JtWJ(a, b);
       }
       total += W;
       sum += W * d;
     }
     const Eigen::Matrix<double, Eigen::Dynamic, 3> weighted = cross * total.inverse();
-    const Eigen::MatrixXd eliminated = weighted.lazyProduct(cross.transpose());
+    Eigen::VectorXd eliminated(count);
     for (Eigen::Index b = 0; b < count; ++b) {
-      for (Eigen::Index a = 0; a < count; ++a) all.matrix(used[a], used[b]) -= eliminated(a, b);
+      eliminated.tail(count - b) = weighted.bottomRows(count - b).lazyProduct(cross.row(b).transpose());
+      for (Eigen::Index a = b; a < count; ++a) all.matrix(used[a], used[b]) -= eliminated[a];
       all.vector[used[b]] += weighted.row(b).dot(sum);
     }
   }
@@ -204,7 +213,9 @@ class StretchEquations {
     information[3] = 1.0 / (noise_.stddev_rad * noise_.stddev_rad * distance_m);
     const Eigen::Matrix<double, kColumns, kColumns> JtWJ = J.transpose() * information.asDiagonal() * J;
     for (int a = 0; a < kColumns; ++a) {
-      for (int b = 0; b < kColumns; ++b) all.matrix(index[a], index[b]) += JtWJ(a, b);
+      for (int b = 0; b < kColumns; ++b) {
+        if (index[a] >= index[b]) all.matrix(index[a], index[b]) += JtWJ(a, b);
+      }
     }
   }
 
@@ -247,12 +258,13 @@ BiasBasis biasBasis(double range_m) {
 
 BiasInformation biasInformation(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise,
                                 const BiasInformation& prior) {
+  const BiasInformation none{Eigen::MatrixXd::Zero(layout.size(), layout.size()), Eigen::VectorXd::Zero(layout.size())};
   StretchEquations equations(stretch, layout, noise);
-  if (equations.isEmpty()) {
-    return {Eigen::MatrixXd::Zero(layout.size(), layout.size()), Eigen::VectorXd::Zero(layout.size())};
+  if (equations.isEmpty()) return none;
+  for (int pass = 0; pass < kRobustPasses; ++pass) {
+    if (!equations.reweigh(prior)) return none;
   }
-  for (int pass = 0; pass < kRobustPasses; ++pass) equations.reweigh(prior);
-  return equations.marginal();
+  return equations.marginal().value_or(none);
 }
 
 }  // namespace semantic_mht_slam

@@ -7,8 +7,8 @@
 
 namespace semantic_mht_slam {
 
-/// Places of the coefficients: of each class the range bias at every knot and the height bias at every knot but the
-/// first, then what all stretches share of scale, direction and slope.
+/// Places of the coefficients: of each class that has a bias the range bias at every knot and the height bias at every
+/// knot but the first, then what all stretches share of scale, direction and slope. Classes are counted among those.
 struct BiasLayout {
   static constexpr std::array<double, 4> kKnots_m = {6.0, 15.0, 25.0, 40.0};
   static constexpr int kRangeKnots = 4;
@@ -47,7 +47,8 @@ struct BiasInformation {
   Eigen::VectorXd vector;
 };
 
-/// `prior` is the information on the coefficients so far, which helps to find wrong associations.
+/// The stretch's classes are those of the layout. `prior` is the information on the coefficients so far, which helps to
+/// find wrong associations.
 BiasInformation biasInformation(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise,
                                 const BiasInformation& prior);
 

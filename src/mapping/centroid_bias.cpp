@@ -54,18 +54,21 @@ void describe(BiasConfig& config, Fields& fields) {
              "Landmarks seen less often in a submap say nothing.");
 }
 
-CentroidBias::CentroidBias(const BiasConfig& config, const ClassTable& classes)
-    : config_(config), class_count_(classes.size()) {
-  const BiasLayout layout{class_count_};
+CentroidBias::CentroidBias(const BiasConfig& config, const ClassTable& classes) : config_(config) {
+  for (const ClassInfo& info : classes.all()) {
+    const double stddev_m = std::max(kMinPriorStddev_m, info.range_stddev_m);
+    max_variance_m2_.push_back(stddev_m * stddev_m);
+    const bool has_bias = info.transition == Transition::kDirac || info.transition_stddev_m <= info.range_stddev_m;
+    place_.push_back(has_bias ? biased_count_++ : -1);
+  }
+  const BiasLayout layout{biased_count_};
   information_ = Eigen::MatrixXd::Zero(layout.size(), layout.size());
   vector_ = Eigen::VectorXd::Zero(layout.size());
-  for (int c = 0; c < class_count_; ++c) {
-    const double stddev_m = std::max(kMinPriorStddev_m, classes[c].range_stddev_m);
-    addClassPrior(information_, layout, c, config.prior_factor * stddev_m, kStepFactor * stddev_m,
+  for (std::size_t c = 0; c < place_.size(); ++c) {
+    if (place_[c] < 0) continue;
+    const double stddev_m = std::sqrt(max_variance_m2_[c]);
+    addClassPrior(information_, layout, place_[c], config.prior_factor * stddev_m, kStepFactor * stddev_m,
                   config.height_stddev_m);
-    max_variance_m2_.push_back(stddev_m * stddev_m);
-    has_bias_.push_back(classes[c].transition == Transition::kDirac ||
-                        classes[c].transition_stddev_m <= classes[c].range_stddev_m);
   }
   for (int i = 0; i < BiasLayout::kMotion; ++i) {
     information_(layout.motion(i), layout.motion(i)) += 1.0 / (config.scale_stddev * config.scale_stddev);
@@ -75,12 +78,15 @@ CentroidBias::CentroidBias(const BiasConfig& config, const ClassTable& classes)
 
 void CentroidBias::add(const BiasStretch& stretch, double odometry_stddev_m, double odometry_stddev_rad) {
   if (!config_.enabled || stretch.T_stretch_base.size() < 2) return;
-  const BiasLayout layout{class_count_};
+  const BiasLayout layout{biased_count_};
   const BiasMotionNoise noise{std::max(odometry_stddev_m, 1e-3), std::max(odometry_stddev_rad, 1e-5),
                               config_.scale_change_stddev, config_.min_observations};
   BiasStretch used{stretch.T_stretch_base, {}};
   for (const BiasObservation& observation : stretch.observations) {
-    if (has_bias_[static_cast<std::size_t>(observation.class_index)]) used.observations.push_back(observation);
+    const int place = place_[static_cast<std::size_t>(observation.class_index)];
+    if (place < 0) continue;
+    used.observations.push_back(observation);
+    used.observations.back().class_index = place;
   }
   const BiasInformation more = biasInformation(used, layout, noise, {information_, vector_});
   if (!more.matrix.allFinite() || !more.vector.allFinite()) return;
@@ -90,28 +96,29 @@ void CentroidBias::add(const BiasStretch& stretch, double odometry_stddev_m, dou
 }
 
 void CentroidBias::solve() {
-  const Eigen::LDLT<Eigen::MatrixXd> factor(information_);
+  const Eigen::LLT<Eigen::MatrixXd> factor(information_);
   cov_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
   mean_ = cov_ * vector_;
 }
 
 CentroidBiasEstimate CentroidBias::at(ClassIndex class_index, double range_m) const {
   CentroidBiasEstimate result;
-  if (!config_.enabled || !has_bias_[static_cast<std::size_t>(class_index)]) return result;
-  const BiasLayout layout{class_count_};
+  const int place = place_[static_cast<std::size_t>(class_index)];
+  if (!config_.enabled || place < 0) return result;
+  const BiasLayout layout{biased_count_};
   const BiasBasis basis = biasBasis(range_m);
   const double a = basis.near_share;
   const double b = basis.far_share;
   const int last = std::min(basis.knot + 1, BiasLayout::kRangeKnots - 1);
-  const int i = layout.range(class_index, basis.knot);
-  const int j = layout.range(class_index, last);
+  const int i = layout.range(place, basis.knot);
+  const int j = layout.range(place, last);
   result.range_m = a * mean_[i] + b * mean_[j];
   result.range_variance_m2 = a * a * cov_(i, i) + 2.0 * a * b * cov_(i, j) + b * b * cov_(j, j);
-  const int v = layout.height(class_index, last);
+  const int v = layout.height(place, last);
   result.height_m = b * mean_[v];
   result.height_variance_m2 = b * b * cov_(v, v);
   if (basis.knot > 0) {
-    const int u = layout.height(class_index, basis.knot);
+    const int u = layout.height(place, basis.knot);
     result.height_m += a * mean_[u];
     result.height_variance_m2 += a * a * cov_(u, u) + 2.0 * a * b * cov_(u, v);
   }
@@ -141,7 +148,7 @@ Detection CentroidBias::corrected(const Detection& detection) const {
 }
 
 double CentroidBias::odometryScale() const {
-  return mean_[BiasLayout{class_count_}.motion(0)];
+  return mean_[BiasLayout{biased_count_}.motion(0)];
 }
 
 }  // namespace semantic_mht_slam

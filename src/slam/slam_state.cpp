@@ -50,7 +50,7 @@ const std::vector<Slam::Section>& Slam::sections() {
                                                  {"submaps", 1, &Slam::transferSubmaps},
                                                  {"keyframes", 1, &Slam::transferKeyframes},
                                                  {"graph", 1, &Slam::transferGraph},
-                                                 {"hypotheses", 2, &Slam::transferMapper}};
+                                                 {"hypotheses", 3, &Slam::transferMapper}};
   return kSections;
 }
 

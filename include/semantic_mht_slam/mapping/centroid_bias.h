@@ -89,9 +89,9 @@ class CentroidBias {
   void solve();
 
   BiasConfig config_;
-  int class_count_;
   std::vector<double> max_variance_m2_;  ///< of each class
-  std::vector<bool> has_bias_;           ///< of each class
+  std::vector<int> place_;               ///< of each class among those that have a bias; -1: has none
+  int biased_count_ = 0;                 ///< classes that have one
   Eigen::MatrixXd information_;          ///< of the coefficients
   Eigen::VectorXd vector_;
   Eigen::VectorXd mean_;
