@@ -164,23 +164,24 @@ void MultiHypothesisTree::trackLandmarks(const FrameInterpretation& interpretati
   std::vector<HypothesisLandmark> first_seen;  // whose ids are later than all others
   std::size_t kept = 0;
   for (std::size_t j = 0; j < landmarks.size(); ++j) {
-    HypothesisLandmark landmark = std::move(landmarks[j]);
     const LandmarkOutlook& outlook = expansion.outlooks[j];
     if (measurement_of[j] < 0) {
       if (outlook.is_forgotten) continue;
-      landmark.existence = outlook.missed;
+      landmarks[j].existence = outlook.missed;
     } else {
       const auto i = static_cast<std::size_t>(measurement_of[j]);
       const Candidate& candidate = *interpretation.roles[i].candidate;
-      const bool was_expected = landmark->is_expected;
-      landmark = tracking_.updated(model_, landmark, corrected_[i], input, candidate, outlook.detection_prob);
-      if (was_expected) {
-        found.emplace_back(landmark->earlier, &corrected_[i]);
-        first_seen.push_back(std::move(landmark));
+      HypothesisLandmark seen =
+          tracking_.updated(model_, landmarks[j], corrected_[i], input, candidate, outlook.detection_prob);
+      if (landmarks[j]->is_expected) {
+        found.emplace_back(landmarks[j]->earlier, &corrected_[i]);
+        first_seen.push_back(std::move(seen));
         continue;
       }
+      landmarks[j] = std::move(seen);
     }
-    landmarks[kept++] = std::move(landmark);
+    if (kept != j) landmarks[kept] = std::move(landmarks[j]);
+    ++kept;
   }
   landmarks.resize(kept);
   for (std::size_t i = 0; i < interpretation.roles.size(); ++i) {

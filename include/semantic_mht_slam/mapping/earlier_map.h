@@ -26,7 +26,7 @@ using EarlierMapProvider = std::function<EarlierMap(const Pose& T_odom_submap)>;
 struct MapAlignmentConfig {
   bool enabled = true;
   double first_m = 4.0;
-  double retry_m = 7.0;
+  double retry_m = 13.0;
   int min_landmarks = 6;
   int max_landmarks = 40;
   double radius_m = 60.0;
