@@ -204,7 +204,8 @@ void VoteGrid::findPeaks(int layer, int y, int begin, int end, HighestPeaks& pea
   if (missing >= 0) return;
   const int center = half_side_ + kMargin;
   for (int x = begin; x < end; ++x) {
-    if (row[x] <= peaks.leastVotes() || !isPeak(layer, y, x)) continue;
+    if (row[x] <= peaks.leastVotes() || row[x] <= row[x - 1] || row[x] < row[x + 1]) continue;  // most end here
+    if (!isPeak(layer, y, x)) continue;
     const AlignmentState state((x - center) * cell_m_, (y - center) * cell_m_, 0.0, yaw(layer));
     const double log_prior = -0.5 * state.cwiseQuotient(problem_.prior_stddev).squaredNorm();
     peaks.add({row[x] / kVotesPerNat + log_prior, layer * best_score_.size() + cellOf(y, x), state});
