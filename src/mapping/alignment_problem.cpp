@@ -40,14 +40,17 @@ void check(const AlignmentPrior& prior) {
   }
 }
 
-/// Brings points into one order that depends on their values alone.
+/// Brings points into one order that depends on their values alone: by class, then by x.
 void sortPoints(std::vector<LevelledPoint>& points) {
-  const auto key = [](const LevelledPoint& p) {
-    return std::make_tuple(p.class_index, p.position_m.x(), p.position_m.y(), p.position_m.z(), p.cov_m2(0, 0),
-                           p.cov_m2(1, 1), p.cov_m2(2, 2), p.cov_m2(0, 1), p.cov_m2(0, 2), p.cov_m2(1, 2));
+  const auto rest = [](const LevelledPoint& p) {
+    return std::make_tuple(p.position_m.y(), p.position_m.z(), p.cov_m2(0, 0), p.cov_m2(1, 1), p.cov_m2(2, 2),
+                           p.cov_m2(0, 1), p.cov_m2(0, 2), p.cov_m2(1, 2));
   };
-  std::sort(points.begin(), points.end(),
-            [&](const LevelledPoint& a, const LevelledPoint& b) { return key(a) < key(b); });
+  std::sort(points.begin(), points.end(), [&](const LevelledPoint& a, const LevelledPoint& b) {
+    if (a.class_index != b.class_index) return a.class_index < b.class_index;
+    if (a.position_m.x() != b.position_m.x()) return a.position_m.x() < b.position_m.x();
+    return rest(a) < rest(b);
+  });
 }
 
 /// The points after p -> rotation * (p - origin).
@@ -64,25 +67,43 @@ std::vector<LevelledPoint> levelled(const std::vector<AlignmentPoint>& points, c
   return result;
 }
 
+using Points = std::vector<LevelledPoint>::const_iterator;
+
+/// Where each class begins in sorted points, and the end.
+std::vector<Points> classBegins(const std::vector<LevelledPoint>& points, int class_count) {
+  std::vector<Points> begins;
+  for (int c = 0; c <= class_count; ++c) {
+    begins.push_back(std::lower_bound(points.begin(), points.end(), c,
+                                      [](const LevelledPoint& p, int index) { return p.class_index < index; }));
+  }
+  return begins;
+}
+
+/// Of sorted points of one class: the first one from `x_m` on.
+Points firstFrom(double x_m, Points begin, Points end) {
+  return std::lower_bound(begin, end, x_m, [](const LevelledPoint& p, double x) { return p.position_m.x() < x; });
+}
+
 /// Landmarks of each class per cubic metre around where the detections of that class are expected. Counted there and
 /// not over the whole map, because objects stand in rows along streets and chance matches are as frequent as the rows
 /// are dense.
-std::vector<double> classDensities(const AlignmentProblem& problem, int class_count,
+std::vector<double> classDensities(const AlignmentProblem& problem, const std::vector<Points>& begins,
                                    const JointAlignmentConfig& config) {
+  const int class_count = static_cast<int>(begins.size()) - 1;
+  const double radius_m = config.density_radius_m;
   std::vector<int> detections(class_count, 0);
   std::vector<int> neighbours(class_count, 0);
-  std::vector<std::size_t> begin(class_count + 1, 0);  // of each class's landmarks, which are sorted by class
-  for (const LevelledPoint& landmark : problem.landmarks) ++begin[landmark.class_index + 1];
-  for (int c = 0; c < class_count; ++c) begin[c + 1] += begin[c];
   for (const LevelledPoint& detection : problem.detections) {
     const int c = detection.class_index;
     ++detections[c];
-    for (std::size_t l = begin[c]; l < begin[c + 1]; ++l) {
-      const double distance_sq = (problem.landmarks[l].position_m - detection.position_m).head<2>().squaredNorm();
-      if (distance_sq < config.density_radius_m * config.density_radius_m) ++neighbours[c];
+    const double x_end_m = detection.position_m.x() + radius_m;
+    Points landmark = firstFrom(detection.position_m.x() - radius_m, begins[c], begins[c + 1]);
+    for (; landmark != begins[c + 1] && landmark->position_m.x() <= x_end_m; ++landmark) {
+      const double distance_sq = (landmark->position_m - detection.position_m).head<2>().squaredNorm();
+      if (distance_sq < radius_m * radius_m) ++neighbours[c];
     }
   }
-  const double volume_m3 = M_PI * config.density_radius_m * config.density_radius_m * config.density_height_m;
+  const double volume_m3 = M_PI * radius_m * radius_m * config.density_height_m;
   std::vector<double> densities;
   for (int c = 0; c < class_count; ++c) {
     densities.push_back(std::max(1.0, neighbours[c] / std::max(1.0, 1.0 * detections[c])) / volume_m3);
@@ -136,22 +157,23 @@ double reach(const LevelledPoint& detection, const AlignmentCandidate& candidate
                    (largestHorizontalVariance(detection.cov_m2) + largestHorizontalVariance(candidate.cov_m2)));
 }
 
-/// What bounds the reach of all matches: most pairs are too far apart for any.
+/// What bounds the reach of all matches with a class: most pairs are too far apart for any.
 struct ReachBound {
   double least_det = std::numeric_limits<double>::infinity();  ///< of the landmarks' covariances
   double largest_variance_m2 = 0.0;                            ///< of theirs, horizontal
 };
 
 /// At range 0: the range adds to the vertical variance alone, which makes determinants larger.
-ReachBound reachBound(const std::vector<LevelledPoint>& landmarks, const ClassTable& classes,
-                      const JointAlignmentConfig& config) {
-  ReachBound bound;
+std::vector<ReachBound> reachBounds(const std::vector<LevelledPoint>& landmarks, const ClassTable& classes,
+                                    const JointAlignmentConfig& config) {
+  std::vector<ReachBound> bounds(static_cast<std::size_t>(classes.size()));
   for (const LevelledPoint& landmark : landmarks) {
+    ReachBound& bound = bounds[static_cast<std::size_t>(landmark.class_index)];
     const Eigen::Matrix3d cov_m2 = landmark.cov_m2 + extraCov(classes[landmark.class_index], 0.0, config);
     bound.least_det = std::min(bound.least_det, cov_m2.determinant());
     bound.largest_variance_m2 = std::max(bound.largest_variance_m2, largestHorizontalVariance(cov_m2));
   }
-  return bound;
+  return bounds;
 }
 
 /// As `reach`, for the landmark that reaches farthest.
@@ -174,28 +196,33 @@ bool isWithin(const Eigen::Vector3d& gap_m, const Eigen::Vector3d& closable_m, d
 }
 
 /// Landmarks that a detection may be; `log_odds` is what holds for all of them.
-std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem, const LevelledPoint& detection,
-                                               const ClassTable& classes, const JointAlignmentConfig& config,
-                                               double log_odds, const ReachBound& bound,
+std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem, const std::vector<Points>& begins,
+                                               const LevelledPoint& detection, const ClassTable& classes,
+                                               const JointAlignmentConfig& config, double log_odds,
+                                               const std::vector<ReachBound>& bounds,
                                                const std::vector<std::vector<double>>& log_class_probs) {
   const double range_m = detection.position_m.head<2>().norm();
-  const double farthest_m = reach(detection, log_odds, bound);
   const Eigen::Vector3d closable_m = closable(detection, problem.window);
   std::vector<AlignmentCandidate> candidates;
-  if (farthest_m <= 0.0) return candidates;
-  for (std::size_t l = 0; l < problem.landmarks.size(); ++l) {
-    const LevelledPoint& landmark = problem.landmarks[l];
-    const Eigen::Vector3d gap_m = landmark.position_m - detection.position_m;
-    if (!isWithin(gap_m, closable_m, farthest_m)) continue;
-    const double log_class_prob = log_class_probs[landmark.class_index][detection.class_index];
-    if (log_class_prob == kImpossible) continue;
-    AlignmentCandidate candidate;
-    candidate.landmark = static_cast<int>(l);
-    candidate.is_same_class = landmark.class_index == detection.class_index;
-    candidate.log_odds = log_odds + log_class_prob;
-    candidate.cov_m2 = landmark.cov_m2 + extraCov(classes[landmark.class_index], range_m, config);
-    candidate.reach_m = reach(detection, candidate);
-    if (candidate.reach_m > 0.0 && isWithin(gap_m, closable_m, candidate.reach_m)) candidates.push_back(candidate);
+  for (int c = 0; c < classes.size(); ++c) {
+    const double log_class_prob = log_class_probs[c][detection.class_index];
+    const double farthest_m = reach(detection, log_odds + log_class_prob, bounds[static_cast<std::size_t>(c)]);
+    if (log_class_prob == kImpossible || farthest_m <= 0.0) continue;
+    const double farthest_x_m = closable_m.x() + farthest_m;
+    const double x_end_m = detection.position_m.x() + farthest_x_m;
+    const Eigen::Matrix3d extra_cov_m2 = extraCov(classes[c], range_m, config);
+    Points landmark = firstFrom(detection.position_m.x() - farthest_x_m, begins[c], begins[c + 1]);
+    for (; landmark != begins[c + 1] && landmark->position_m.x() <= x_end_m; ++landmark) {
+      const Eigen::Vector3d gap_m = landmark->position_m - detection.position_m;
+      if (!isWithin(gap_m, closable_m, farthest_m)) continue;
+      AlignmentCandidate candidate;
+      candidate.landmark = static_cast<int>(landmark - problem.landmarks.begin());
+      candidate.is_same_class = c == detection.class_index;
+      candidate.log_odds = log_odds + log_class_prob;
+      candidate.cov_m2 = landmark->cov_m2 + extra_cov_m2;
+      candidate.reach_m = reach(detection, candidate);
+      if (candidate.reach_m > 0.0 && isWithin(gap_m, closable_m, candidate.reach_m)) candidates.push_back(candidate);
+    }
   }
   return candidates;
 }
@@ -223,14 +250,16 @@ AlignmentProblem makeAlignmentProblem(const std::vector<AlignmentPoint>& detecti
   problem.window.head<3>() = problem.window.head<3>().cwiseMin(config.max_window_m);
   problem.window(3) = std::min(problem.window(3), M_PI);
 
-  const std::vector<double> densities = classDensities(problem, classes.size(), config);
+  const std::vector<Points> begins = classBegins(problem.landmarks, classes.size());
+  const std::vector<double> densities = classDensities(problem, begins, config);
   const std::vector<std::vector<double>> log_class_probs = logClassProbs(classes, config.confusion_prob);
-  const ReachBound bound = reachBound(problem.landmarks, classes, config);
+  const std::vector<ReachBound> bounds = reachBounds(problem.landmarks, classes, config);
   for (const LevelledPoint& detection : problem.detections) {
     const ClassInfo& info = classes[detection.class_index];
     const double match_prob = info.is_static ? config.static_match_prob : config.movable_match_prob;
     const double log_odds = std::log(match_prob / (1.0 - match_prob)) - std::log(densities[detection.class_index]);
-    problem.candidates.push_back(findCandidates(problem, detection, classes, config, log_odds, bound, log_class_probs));
+    problem.candidates.push_back(
+        findCandidates(problem, begins, detection, classes, config, log_odds, bounds, log_class_probs));
     problem.is_static.push_back(info.is_static);
     problem.is_covered.push_back(hasLandmarkAround(problem, detection, config.density_radius_m));
   }

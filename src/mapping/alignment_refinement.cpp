@@ -98,7 +98,8 @@ void AlignmentRefinement::addPairs(int index, const AlignmentState& state, const
   for (const AlignmentCandidate& candidate : problem_.candidates[index]) {
     pair.landmark = candidate.landmark;
     pair.residual_m = problem_.landmarks[candidate.landmark].position_m - turned_m - state.head<3>();
-    if (pair.residual_m.head<2>().norm() > candidate.reach_m + more_reach_m) continue;
+    const double reach_m = candidate.reach_m + more_reach_m;
+    if (pair.residual_m.head<2>().squaredNorm() > reach_m * reach_m) continue;
     const Eigen::Matrix3d cov_m2 = own_cov_m2 + candidate.cov_m2;
     pair.information = cov_m2.inverse();
     pair.log_odds = candidate.log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(cov_m2.determinant()) +

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "semantic_mht_slam/common/log_math.h"
 #include "semantic_mht_slam/mapping/fusion.h"
 
 namespace semantic_mht_slam {
@@ -27,12 +26,6 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
   return {std::sqrt(along.dot(cov_m2 * along)), std::sqrt(across.dot(cov_m2 * across)), std::sqrt(up.dot(cov_m2 * up))};
 }
 
-/// What a hypothesis believes of a landmark's visibility; that it is seen, if the hypothesis does not have it.
-double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
-  const HypothesisLandmark* landmark = findLandmark(id, hypothesis.landmarks);
-  return landmark != nullptr ? landmark->existence.visible_prob : 1.0;
-}
-
 }  // namespace
 
 Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
@@ -40,7 +33,8 @@ Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
       classes_(classes),
       calibration_(config.calibration, classes),
       bias_(config.bias, classes),
-      tree_(config, classes) {}
+      tree_(config, classes),
+      propagation_(config) {}
 
 Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
   if (detection.cov_m2) return *detection.cov_m2;
@@ -144,7 +138,7 @@ std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_
 
 void Mapper::forgetSurroundings() {
   if (is_open_) throw std::logic_error("Mapper: surroundings are forgotten between submaps");
-  carried_.clear();
+  propagation_.clear();
   calibration_.forgetFrames();
 }
 
@@ -156,25 +150,10 @@ void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {
   T_submap_base_.clear();
   rows_.clear();
   keyframes_.clear();
-  const Pose T_old_base = semantic_mht_slam::corrected(T_odom_carried_.inverse() * T_odom_base, carried_offset_);
   T_odom_submap_ = T_odom_base;
   const bool is_asked = config_.alignment.enabled && earlier_map_provider_;
-  tree_.restart(propagated(T_old_base.inverse()), is_asked ? earlier_map_provider_(T_odom_submap_) : EarlierMap{});
-}
-
-std::vector<HypothesisLandmark> Mapper::propagated(const Pose& T_new_old) const {
-  const Eigen::Matrix3d R = T_new_old.rotation.toRotationMatrix();
-  std::vector<HypothesisLandmark> result;
-  for (const HypothesisLandmark& landmark : carried_) {
-    auto moved = std::make_shared<TrackedLandmark>(*landmark);
-    moved->position.mean_m = T_new_old * landmark->position.mean_m;
-    const Eigen::Matrix3d cov = R * landmark->position.cov_m2 * R.transpose();
-    moved->position.cov_m2 = cov + pointCov(carried_offset_, moved->position.mean_m);
-    moved->is_from_earlier_submap = true;
-    moved->updated_at_m = 0.0;
-    result.push_back({std::move(moved), landmark.existence});
-  }
-  return result;
+  tree_.restart(propagation_.beginSubmap(index_, T_odom_submap_),
+                is_asked ? earlier_map_provider_(T_odom_submap_) : EarlierMap{});
 }
 
 void Mapper::keepKeyframe(const Pose& T_submap_base, const Detections& detections) {
@@ -231,20 +210,6 @@ void Mapper::joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& sub
             [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
 }
 
-void Mapper::carry(const MixtureLandmark& landmark) {
-  auto carried = std::make_shared<TrackedLandmark>();
-  carried->id = landmark.id;
-  carried->position = landmark.position;
-  carried->class_probs = landmark.class_probs;
-  carried->observations = landmark.observations;
-  carried->first_submap = landmark.first_submap;
-  carried->last_submap = landmark.last_submap;
-  Existence existence;
-  existence.log_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
-  existence.visible_prob = visibilityOf(landmark.id, tree_.leaves().front());
-  carried_.push_back({std::move(carried), existence});
-}
-
 std::optional<Submap> Mapper::finish() {
   if (!is_open_) return std::nullopt;
   is_open_ = false;
@@ -263,10 +228,6 @@ std::optional<Submap> Mapper::finish() {
   if (config_.bias.enabled) {
     bias_.add(biasStretch(fused_associations), config_.submap.odometry_stddev_m, config_.submap.odometry_stddev_rad);
   }
-  carried_.clear();
-  T_odom_carried_ = T_odom_submap_;
-  carried_offset_ = tree_.leaves().front().offset;
-  const int oldest = index_ - static_cast<int>(config_.submap.propagation_m / config_.submap.length_m);
   std::vector<MixtureLandmark> landmarks = fuseHypotheses(tree_.leaves());
   const auto detector_cov = [this](ClassIndex class_index) -> Eigen::Matrix3d {
     const Eigen::Vector3d stddev_m = calibration_.noiseStddev(class_index, 20.0);
@@ -279,9 +240,8 @@ std::optional<Submap> Mapper::finish() {
   joinEarlierMap(landmarks, submap);
   for (const MixtureLandmark& landmark : landmarks) {
     if (landmark.last_submap == index_) submap.landmarks.push_back(landmark);
-    if (landmark.last_submap < oldest) continue;
-    carry(landmark);
   }
+  propagation_.endSubmap(index_, T_odom_submap_, landmarks, tree_.leaves().front());
   return submap;
 }
 

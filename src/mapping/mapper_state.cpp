@@ -16,6 +16,22 @@ void transferFixed(StateArchive& archive, List& list) {
   if (list.size() != size) StateArchive::fail("it belongs to another class table");
 }
 
+void transferLandmarks(StateArchive& archive, std::vector<HypothesisLandmark>& landmarks) {
+  std::vector<TrackedLandmark> tracked;
+  std::vector<Existence> existence;
+  for (const HypothesisLandmark& landmark : landmarks) {
+    tracked.push_back(*landmark);
+    existence.push_back(landmark.existence);
+  }
+  archive(tracked, existence);
+  if (!archive.isReading()) return;
+  if (existence.size() != tracked.size()) StateArchive::fail("landmarks without existence");
+  landmarks.clear();
+  for (std::size_t i = 0; i < tracked.size(); ++i) {
+    landmarks.push_back({std::make_shared<const TrackedLandmark>(std::move(tracked[i])), existence[i]});
+  }
+}
+
 }  // namespace
 
 void RunningMedian::transfer(StateArchive& archive) {
@@ -76,6 +92,12 @@ void MultiHypothesisTree::transfer(StateArchive& archive) {
   archive(next_hypothesis_id_);
 }
 
+void LandmarkPropagation::transfer(StateArchive& archive) {
+  archive(T_odom_last_, last_offset_);
+  transferLandmarks(archive, landmarks_);
+  transferLandmarks(archive, resting_);
+}
+
 void Mapper::Keyframe::transfer(StateArchive& archive) {
   archive(place, T_submap_base, detections);
 }
@@ -83,20 +105,7 @@ void Mapper::Keyframe::transfer(StateArchive& archive) {
 void Mapper::transfer(StateArchive& archive) {
   archive(calibration_, bias_, tree_);
   archive(next_landmark_, index_, is_open_, begin_, end_, T_odom_submap_, T_odom_last_, length_m_);
-  archive(T_submap_base_, rows_, keyframes_, T_odom_carried_, carried_offset_);
-  std::vector<TrackedLandmark> carried;
-  std::vector<Existence> existence;
-  for (const HypothesisLandmark& landmark : carried_) {
-    carried.push_back(*landmark);
-    existence.push_back(landmark.existence);
-  }
-  archive(carried, existence);
-  if (!archive.isReading()) return;
-  if (existence.size() != carried.size()) StateArchive::fail("landmarks without existence");
-  carried_.clear();
-  for (std::size_t i = 0; i < carried.size(); ++i) {
-    carried_.push_back({std::make_shared<const TrackedLandmark>(std::move(carried[i])), existence[i]});
-  }
+  archive(T_submap_base_, rows_, keyframes_, propagation_);
 }
 
 }  // namespace semantic_mht_slam

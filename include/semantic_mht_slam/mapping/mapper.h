@@ -12,6 +12,7 @@
 #include "semantic_mht_slam/mapping/centroid_bias.h"
 #include "semantic_mht_slam/mapping/fusion.h"
 #include "semantic_mht_slam/mapping/hypothesis_tree.h"
+#include "semantic_mht_slam/mapping/landmark_propagation.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 #include "semantic_mht_slam/models/detection.h"
 
@@ -71,10 +72,8 @@ class Mapper {
   void begin(Stamp stamp, const Pose& T_odom_base);
   Measurement makeMeasurement(const Detection& detection);
   std::shared_ptr<const std::vector<ClassNoise>> noiseOfClasses(double range_m);
-  std::vector<HypothesisLandmark> propagated(const Pose& T_new_old) const;
   void keepKeyframe(const Pose& T_submap_base, const Detections& detections);
   void joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const;
-  void carry(const MixtureLandmark& landmark);
   void learnDetectionRate(const std::vector<FusedAssociations>& associations,
                           const std::vector<MixtureLandmark>& landmarks);
   bool learnsConfusion() const;
@@ -87,6 +86,7 @@ class Mapper {
   DetectorCalibration calibration_;
   CentroidBias bias_;
   MultiHypothesisTree tree_;
+  LandmarkPropagation propagation_;
   /// Of the present frame, by range; null until a detection there asks for it.
   std::array<std::shared_ptr<const std::vector<ClassNoise>>, DetectorCalibration::kRangeBins> noise_of_class_;
   EarlierMapProvider earlier_map_provider_;
@@ -101,9 +101,6 @@ class Mapper {
   std::vector<Pose> T_submap_base_;     ///< of each frame of this submap, by the odometry
   std::vector<std::vector<int>> rows_;  ///< of the measurements of each frame of this submap
   std::vector<Keyframe> keyframes_;
-  std::vector<HypothesisLandmark> carried_;  ///< landmarks that go on into the next submap, old submap frame
-  Pose T_odom_carried_;
-  PoseOffset carried_offset_;
 };
 
 }  // namespace semantic_mht_slam

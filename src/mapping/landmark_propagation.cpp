@@ -1,0 +1,95 @@
+#include "semantic_mht_slam/mapping/landmark_propagation.h"
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include "semantic_mht_slam/common/log_math.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+/// What a hypothesis believes of a landmark's visibility; that it is seen, if the hypothesis does not have it.
+double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
+  const HypothesisLandmark* landmark = findLandmark(id, hypothesis.landmarks);
+  return landmark != nullptr ? landmark->existence.visible_prob : 1.0;
+}
+
+HypothesisLandmark tracked(const MixtureLandmark& landmark, const MapHypothesis& best) {
+  auto result = std::make_shared<TrackedLandmark>();
+  result->id = landmark.id;
+  result->position = landmark.position;
+  result->class_probs = landmark.class_probs;
+  result->observations = landmark.observations;
+  result->first_submap = landmark.first_submap;
+  result->last_submap = landmark.last_submap;
+  Existence existence;
+  existence.log_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
+  existence.visible_prob = visibilityOf(landmark.id, best);
+  return {std::move(result), existence};
+}
+
+bool isBefore(const HypothesisLandmark& a, const HypothesisLandmark& b) {
+  return a->id < b->id;
+}
+
+}  // namespace
+
+LandmarkPropagation::LandmarkPropagation(const MapperConfig& config)
+    : reach_m_(config.detection.max_range_m + config.submap.length_m + config.association.max_gate_m),
+      propagated_submaps_(static_cast<int>(config.submap.propagation_m / config.submap.length_m)) {}
+
+void LandmarkPropagation::clear() {
+  landmarks_.clear();
+  resting_.clear();
+}
+
+void LandmarkPropagation::endSubmap(int submap, const Pose& T_odom_submap,
+                                    const std::vector<MixtureLandmark>& landmarks, const MapHypothesis& best) {
+  T_odom_last_ = T_odom_submap;
+  last_offset_ = best.offset;
+  const int oldest = submap - propagated_submaps_;
+  landmarks_.clear();
+  for (const MixtureLandmark& landmark : landmarks) {
+    if (landmark.last_submap >= oldest) landmarks_.push_back(tracked(landmark, best));
+  }
+  const auto of_submap = static_cast<std::ptrdiff_t>(landmarks_.size());
+  for (HypothesisLandmark& landmark : resting_) {
+    const auto end = landmarks_.begin() + of_submap;
+    const bool is_known = std::binary_search(landmarks_.begin(), end, landmark, isBefore);
+    if (!is_known && landmark->last_submap >= oldest) landmarks_.push_back(std::move(landmark));
+  }
+  resting_.clear();
+  std::inplace_merge(landmarks_.begin(), landmarks_.begin() + of_submap, landmarks_.end(), isBefore);
+}
+
+std::vector<HypothesisLandmark> LandmarkPropagation::beginSubmap(int submap, const Pose& T_odom_submap) {
+  propagate(corrected(T_odom_last_.inverse() * T_odom_submap, last_offset_).inverse());
+  std::vector<HypothesisLandmark> near;
+  for (HypothesisLandmark& landmark : landmarks_) {
+    (isOutOfReach(*landmark, submap) ? resting_ : near).push_back(std::move(landmark));
+  }
+  landmarks_.clear();
+  return near;
+}
+
+void LandmarkPropagation::propagate(const Pose& T_new_old) {
+  const Eigen::Matrix3d R = T_new_old.rotation.toRotationMatrix();
+  for (HypothesisLandmark& landmark : landmarks_) {
+    auto moved = std::make_shared<TrackedLandmark>(*landmark);
+    moved->position.mean_m = T_new_old * landmark->position.mean_m;
+    const Eigen::Matrix3d cov = R * landmark->position.cov_m2 * R.transpose();
+    moved->position.cov_m2 = cov + pointCov(last_offset_, moved->position.mean_m);
+    moved->is_from_earlier_submap = true;
+    moved->updated_at_m = 0.0;
+    landmark.tracked = std::move(moved);
+  }
+}
+
+/// What was seen in the submap before may be seen from farther away than detections are expected from.
+bool LandmarkPropagation::isOutOfReach(const TrackedLandmark& landmark, int submap) const {
+  return landmark.last_submap < submap - 1 && landmark.position.mean_m.head<2>().norm() > reach_m_;
+}
+
+}  // namespace semantic_mht_slam
