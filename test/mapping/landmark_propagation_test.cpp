@@ -1,0 +1,140 @@
+#include "semantic_mht_slam/mapping/landmark_propagation.h"
+
+#include <gtest/gtest.h>
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kLength_m = 30.0;
+constexpr double kReach_m = 50.0 + kLength_m + 6.0;  // range of detections, a submap, a gate
+
+/// Landmarks go on for ten submaps.
+LandmarkPropagation makePropagation() {
+  MapperConfig config;
+  config.submap.length_m = kLength_m;
+  config.submap.propagation_m = 300.0;
+  config.detection.max_range_m = 50.0;
+  config.association.max_gate_m = 6.0;
+  return LandmarkPropagation(config);
+}
+
+MixtureLandmark makeLandmark(LandmarkId id, double x_m, int last_submap) {
+  MixtureLandmark landmark;
+  landmark.id = id;
+  landmark.position = {{x_m, 2.0, 0.5}, 0.04 * Eigen::Matrix3d::Identity()};
+  landmark.class_probs = ClassProbs::Constant(2, 0.5);
+  landmark.existence_prob = 0.9;
+  landmark.observations = 7;
+  landmark.last_submap = last_submap;
+  return landmark;
+}
+
+/// Where submap i begins on a straight drive.
+Pose originOf(int submap) {
+  Pose pose;
+  pose.translation_m.x() = kLength_m * submap;
+  return pose;
+}
+
+/// Drives on without seeing anything: the landmarks of the last of `submaps` more.
+std::vector<HypothesisLandmark> driveOn(LandmarkPropagation& propagation, int from, int submaps) {
+  std::vector<HypothesisLandmark> near;
+  for (int submap = from; submap < from + submaps; ++submap) {
+    if (submap > from) {
+      std::vector<MixtureLandmark> fused;
+      for (const HypothesisLandmark& landmark : near) {
+        fused.push_back(makeLandmark(landmark->id, 0.0, landmark->last_submap));
+        fused.back().position = landmark->position;
+      }
+      propagation.endSubmap(submap - 1, originOf(submap - 1), fused, {});
+    }
+    near = propagation.beginSubmap(submap, originOf(submap));
+  }
+  return near;
+}
+
+TEST(LandmarkPropagationTest, LandmarksComeInTheFrameOfTheNextSubmap) {
+  LandmarkPropagation propagation = makePropagation();
+  MapHypothesis best;
+  best.offset.mean = {0.5, 0.0, 0.0, 0.0};  // the odometry is half a metre behind
+  best.offset.cov.diagonal().head<3>().setConstant(0.01);
+  propagation.endSubmap(0, originOf(0), {makeLandmark(3, 40.0, 0)}, best);
+  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(1, originOf(1));
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_TRUE(near[0]->position.mean_m.isApprox(Eigen::Vector3d(9.5, 2.0, 0.5), 1e-12));
+  EXPECT_TRUE(near[0]->position.cov_m2.isApprox(0.05 * Eigen::Matrix3d::Identity(), 1e-12));
+  EXPECT_TRUE(near[0]->is_from_earlier_submap);
+  EXPECT_EQ(near[0]->observations, 7);
+  EXPECT_NEAR(near[0].existence.log_odds, std::log(9.0), 1e-12);
+}
+
+TEST(LandmarkPropagationTest, WhatTheSubmapCannotSeeRestsUntilItIsNearAgain) {
+  LandmarkPropagation propagation = makePropagation();
+  const double behind_m = 2.0 * kLength_m - kReach_m;  // at the beginning of submap 2 just out of reach
+  const std::vector<MixtureLandmark> landmarks = {makeLandmark(1, behind_m - 0.5, 0),
+                                                  makeLandmark(2, behind_m + 0.5, 0), makeLandmark(3, 20.0, 0)};
+  propagation.endSubmap(0, originOf(0), landmarks, {});
+  std::vector<HypothesisLandmark> near = driveOn(propagation, 1, 2);
+  ASSERT_EQ(near.size(), 2u);
+  EXPECT_EQ(near[0]->id, 2u);
+  EXPECT_EQ(near[1]->id, 3u);
+  propagation.endSubmap(2, originOf(2), {}, {});
+  near = propagation.beginSubmap(3, originOf(0));  // back where it began
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_EQ(near[0]->id, 1u);
+  EXPECT_TRUE(near[0]->position.mean_m.isApprox(Eigen::Vector3d(behind_m - 0.5, 2.0, 0.5), 1e-12));
+  EXPECT_EQ(near[0]->last_submap, 0);
+}
+
+TEST(LandmarkPropagationTest, WhatTheSubmapBeforeSawStaysHoweverFarItIs) {
+  LandmarkPropagation propagation = makePropagation();
+  propagation.endSubmap(0, originOf(0), {makeLandmark(1, kReach_m + kLength_m + 10.0, 0)}, {});
+  EXPECT_EQ(propagation.beginSubmap(1, originOf(1)).size(), 1u);
+}
+
+TEST(LandmarkPropagationTest, LandmarksAreForgottenWhenNotSeenForLong) {
+  LandmarkPropagation propagation = makePropagation();
+  const auto seen_again = [&](int submaps) {
+    propagation.clear();
+    propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0)}, {});
+    driveOn(propagation, 1, submaps);  // resting from submap 3 on
+    propagation.endSubmap(submaps, originOf(submaps), {}, {});
+    return propagation.beginSubmap(submaps + 1, originOf(0)).size() == 1;
+  };
+  EXPECT_TRUE(seen_again(10));
+  EXPECT_FALSE(seen_again(11));
+}
+
+TEST(LandmarkPropagationTest, AnIdIsNotTwiceInASubmap) {
+  LandmarkPropagation propagation = makePropagation();
+  propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0), makeLandmark(2, 20.0, 0)}, {});
+  driveOn(propagation, 1, 4);
+  propagation.endSubmap(4, originOf(4), {makeLandmark(1, 5.0, 4)}, {});  // as when the earlier map knows it
+  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(5, originOf(4));
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_NEAR(near[0]->position.mean_m.x(), 5.0, 1e-12);
+  EXPECT_EQ(near[0]->last_submap, 4);
+}
+
+TEST(LandmarkPropagationTest, RestingLandmarksOutliveTheProgram) {
+  LandmarkPropagation propagation = makePropagation();
+  propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0), makeLandmark(2, 60.0, 0)}, {});
+  driveOn(propagation, 1, 4);
+  StateArchive writing;
+  propagation.transfer(writing);
+  StateArchive reading(writing.written());
+  LandmarkPropagation restored = makePropagation();
+  restored.transfer(reading);
+  for (LandmarkPropagation* each : {&propagation, &restored}) {
+    each->endSubmap(4, originOf(4), {}, {});
+    const std::vector<HypothesisLandmark> near = each->beginSubmap(5, originOf(1));
+    ASSERT_EQ(near.size(), 1u);
+    EXPECT_EQ(near[0]->id, 1u);
+    EXPECT_NEAR(near[0]->position.mean_m.x(), -kLength_m, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
