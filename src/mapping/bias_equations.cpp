@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -54,21 +54,8 @@ class StretchEquations {
     return true;
   }
 
-  /// What is known of the coefficients without any prior on them; empty as above.
-  std::optional<BiasInformation> marginal() const {
-    const BiasInformation all = normalEquations();
-    const int m = layout_.size();
-    const int n = size_ - m;
-    const Eigen::LLT<Eigen::MatrixXd> factor(all.matrix.bottomRightCorner(n, n));
-    if (factor.info() != Eigen::Success) return std::nullopt;
-    const Eigen::MatrixXd whitened = factor.matrixL().solve(all.matrix.bottomLeftCorner(n, m));
-    BiasInformation result;
-    result.matrix = all.matrix.topLeftCorner(m, m);
-    result.matrix.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose(), -1.0);
-    result.matrix.triangularView<Eigen::StrictlyUpper>() = result.matrix.transpose();
-    result.vector = all.vector.head(m) - whitened.transpose() * factor.matrixL().solve(all.vector.tail(n));
-    return result;
-  }
+  /// What is known of the coefficients without any prior on them.
+  BiasInformation marginal() const { return semantic_mht_slam::marginal(normalEquations(), layout_.size()); }
 
  private:
   int motion(int i) const { return layout_.size() + i; }
@@ -256,6 +243,18 @@ BiasBasis biasBasis(double range_m) {
   return {knot, 1.0 - far_share, far_share};
 }
 
+BiasInformation marginal(const BiasInformation& all, int count) {
+  const Eigen::Index n = all.vector.size() - count;
+  BiasInformation result{all.matrix.topLeftCorner(count, count), all.vector.head(count)};
+  const Eigen::LLT<Eigen::MatrixXd> factor(all.matrix.bottomRightCorner(n, n));
+  if (factor.info() != Eigen::Success) result.vector.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Eigen::MatrixXd whitened = factor.matrixL().solve(all.matrix.bottomLeftCorner(n, count));
+  result.matrix.selfadjointView<Eigen::Lower>().rankUpdate(whitened.transpose(), -1.0);
+  result.matrix.triangularView<Eigen::StrictlyUpper>() = result.matrix.transpose();
+  result.vector -= whitened.transpose() * factor.matrixL().solve(all.vector.tail(n));
+  return result;
+}
+
 BiasInformation biasInformation(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise,
                                 const BiasInformation& prior) {
   const BiasInformation none{Eigen::MatrixXd::Zero(layout.size(), layout.size()), Eigen::VectorXd::Zero(layout.size())};
@@ -264,7 +263,7 @@ BiasInformation biasInformation(const BiasStretch& stretch, const BiasLayout& la
   for (int pass = 0; pass < kRobustPasses; ++pass) {
     if (!equations.reweigh(prior)) return none;
   }
-  return equations.marginal().value_or(none);
+  return equations.marginal();
 }
 
 }  // namespace semantic_mht_slam

@@ -47,6 +47,10 @@ struct BiasInformation {
   Eigen::VectorXd vector;
 };
 
+/// What is known of the first `count` unknowns whatever the others are (Schur complement). Only lower triangles are
+/// read. Not finite if the others are not determined.
+BiasInformation marginal(const BiasInformation& all, int count);
+
 /// The stretch's classes are those of the layout. `prior` is the information on the coefficients so far, which helps to
 /// find wrong associations.
 BiasInformation biasInformation(const BiasStretch& stretch, const BiasLayout& layout, const BiasMotionNoise& noise,

@@ -38,6 +38,16 @@ void addClassPrior(Eigen::MatrixXd& information, const BiasLayout& layout, Class
   }
 }
 
+BiasInformation ordered(const BiasInformation& information, const std::vector<int>& order) {
+  const auto size = static_cast<Eigen::Index>(order.size());
+  BiasInformation result{Eigen::MatrixXd(size, size), Eigen::VectorXd(size)};
+  for (Eigen::Index a = 0; a < size; ++a) {
+    for (Eigen::Index b = 0; b < size; ++b) result.matrix(a, b) = information.matrix(order[a], order[b]);
+    result.vector[a] = information.vector[order[a]];
+  }
+  return result;
+}
+
 }  // namespace
 
 void describe(BiasConfig& config, Fields& fields) {
@@ -56,22 +66,24 @@ void describe(BiasConfig& config, Fields& fields) {
 
 CentroidBias::CentroidBias(const BiasConfig& config, const ClassTable& classes) : config_(config) {
   for (const ClassInfo& info : classes.all()) {
-    const double stddev_m = std::max(kMinPriorStddev_m, info.range_stddev_m);
-    max_variance_m2_.push_back(stddev_m * stddev_m);
+    stddev_m_.push_back(std::max(kMinPriorStddev_m, info.range_stddev_m));
     const bool has_bias = info.transition == Transition::kDirac || info.transition_stddev_m <= info.range_stddev_m;
     place_.push_back(has_bias ? biased_count_++ : -1);
   }
+  forget();
+}
+
+void CentroidBias::forget() {
   const BiasLayout layout{biased_count_};
   information_ = Eigen::MatrixXd::Zero(layout.size(), layout.size());
   vector_ = Eigen::VectorXd::Zero(layout.size());
   for (std::size_t c = 0; c < place_.size(); ++c) {
     if (place_[c] < 0) continue;
-    const double stddev_m = std::sqrt(max_variance_m2_[c]);
-    addClassPrior(information_, layout, place_[c], config.prior_factor * stddev_m, kStepFactor * stddev_m,
-                  config.height_stddev_m);
+    addClassPrior(information_, layout, place_[c], config_.prior_factor * stddev_m_[c], kStepFactor * stddev_m_[c],
+                  config_.height_stddev_m);
   }
   for (int i = 0; i < BiasLayout::kMotion; ++i) {
-    information_(layout.motion(i), layout.motion(i)) += 1.0 / (config.scale_stddev * config.scale_stddev);
+    information_(layout.motion(i), layout.motion(i)) += 1.0 / (config_.scale_stddev * config_.scale_stddev);
   }
   solve();
 }
@@ -90,15 +102,48 @@ void CentroidBias::add(const BiasStretch& stretch, double odometry_stddev_m, dou
   }
   const BiasInformation more = biasInformation(used, layout, noise, {information_, vector_});
   if (!more.matrix.allFinite() || !more.vector.allFinite()) return;
+  const BiasInformation before{information_, vector_};
   information_ += more.matrix;
   vector_ += more.vector;
-  solve();
+  if (solve()) return;
+  information_ = before.matrix;
+  vector_ = before.vector;
 }
 
-void CentroidBias::solve() {
+void CentroidBias::adopt(const std::vector<int>& place, const Eigen::MatrixXd& information,
+                         const Eigen::VectorXd& vector) {
+  forget();
+  const BiasLayout ours{biased_count_};
+  const BiasLayout theirs{static_cast<int>(std::count_if(place.begin(), place.end(), [](int p) { return p >= 0; }))};
+  std::vector<int>
+      order;  // their coefficients: those that are ours, too, then those of classes that have none any more
+  std::vector<int> our_place;
+  std::vector<int> gone;
+  for (std::size_t c = 0; c < place_.size(); ++c) {
+    for (int i = 0; i < BiasLayout::kPerClass && place[c] >= 0; ++i) {
+      (place_[c] < 0 ? gone : order).push_back(theirs.range(place[c], 0) + i);
+      if (place_[c] >= 0) our_place.push_back(ours.range(place_[c], 0) + i);
+    }
+  }
+  for (int i = 0; i < BiasLayout::kMotion; ++i) {
+    order.push_back(theirs.motion(i));
+    our_place.push_back(ours.motion(i));
+  }
+  order.insert(order.end(), gone.begin(), gone.end());
+  const BiasInformation kept = marginal(ordered({information, vector}, order), static_cast<int>(our_place.size()));
+  for (std::size_t a = 0; a < our_place.size(); ++a) {
+    for (std::size_t b = 0; b < our_place.size(); ++b) information_(our_place[a], our_place[b]) = kept.matrix(a, b);
+    vector_[our_place[a]] = kept.vector[a];
+  }
+}
+
+/// False, and the solution stays as it was, if the information has none.
+bool CentroidBias::solve() {
   const Eigen::LLT<Eigen::MatrixXd> factor(information_);
+  if (factor.info() != Eigen::Success) return false;
   cov_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
   mean_ = cov_ * vector_;
+  return true;
 }
 
 CentroidBiasEstimate CentroidBias::at(ClassIndex class_index, double range_m) const {
@@ -130,7 +175,8 @@ Eigen::Matrix3d CentroidBias::uncertainty(ClassIndex class_index, const Eigen::V
   if (!config_.enabled || range_m < kMinRange_m) return Eigen::Matrix3d::Zero();
   const CentroidBiasEstimate bias = at(class_index, range_m);
   const Eigen::Vector3d ray = position_m / range_m;
-  const double max_variance_m2 = max_variance_m2_[static_cast<std::size_t>(class_index)];
+  const double stddev_m = stddev_m_[static_cast<std::size_t>(class_index)];
+  const double max_variance_m2 = stddev_m * stddev_m;
   Eigen::Matrix3d cov = std::min(bias.range_variance_m2, max_variance_m2) * ray * ray.transpose();
   cov(2, 2) += std::min(bias.height_variance_m2, max_variance_m2);
   return cov;

@@ -11,7 +11,8 @@ void describe(DetectionConfig& config, Fields& fields) {
   fields.add("detection_prob", config.detection_prob, "", {0.01, 0.999},
              "P_D close to the sensor, before it is known.");
   fields.add("half_range", config.half_range_m, "m", {1.0, 1000.0}, "Range at which P_D has fallen to half.");
-  fields.add("max_range", config.max_range_m, "m", {1.0, 1000.0}, "Landmarks beyond this are not expected to be seen.");
+  fields.add("max_range", config.max_range_m, "m", {1.0, 1000.0},
+             "Landmarks beyond this are not expected to be seen, and rest while a submap comes nowhere so near.");
   fields.add("prior_samples", config.prior_samples, "frames", {1.0, 1e12},
              "How much that curve counts against what is seen, in each cell of class, range and bearing.");
   fields.add("visibility_switch_prob", config.visibility_switch_prob, "1/frame", {0.0001, 0.5},

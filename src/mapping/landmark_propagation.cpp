@@ -82,7 +82,6 @@ void LandmarkPropagation::propagate(const Pose& T_new_old) {
     const Eigen::Matrix3d cov = R * landmark->position.cov_m2 * R.transpose();
     moved->position.cov_m2 = cov + pointCov(last_offset_, moved->position.mean_m);
     moved->is_from_earlier_submap = true;
-    moved->updated_at_m = 0.0;
     landmark.tracked = std::move(moved);
   }
 }

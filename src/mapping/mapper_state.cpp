@@ -4,6 +4,8 @@
 #include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/models/detection_state.h"
 
+#include "bias_equations.h"
+
 // What of the mapper outlives a program: the open submap with its hypotheses, and all that was learned on the way.
 namespace semantic_mht_slam {
 namespace {
@@ -58,12 +60,22 @@ void DetectorCalibration::transfer(StateArchive& archive) {
 }
 
 void CentroidBias::transfer(StateArchive& archive) {
-  const Eigen::Index size = vector_.size();
-  archive(information_, vector_);
-  if (vector_.size() != size || information_.rows() != size || information_.cols() != size) {
-    StateArchive::fail("it belongs to another class table");
+  std::vector<int> place = place_;
+  Eigen::MatrixXd information = information_;
+  Eigen::VectorXd vector = vector_;
+  archive(place, information, vector);
+  if (!archive.isReading()) return;
+  if (place.size() != place_.size()) StateArchive::fail("it belongs to another class table");
+  int biased_count = 0;
+  for (const int p : place) {
+    if (p != -1 && p != biased_count++) StateArchive::fail("places of biases that are not in order");
   }
-  if (archive.isReading()) solve();
+  const int size = BiasLayout{biased_count}.size();
+  if (vector.size() != size || information.rows() != size || information.cols() != size) {
+    StateArchive::fail("a bias of another size than its classes have");
+  }
+  adopt(place, information, vector);
+  if (!vector_.allFinite() || !solve()) StateArchive::fail("a bias without a solution");
 }
 
 void DetectionRate::Cell::transfer(StateArchive& archive) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/common/random.h"
+#include "semantic_mht_slam/common/state_archive.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -13,13 +14,14 @@ constexpr double kKeyframeSpacing_m = 2.0;
 constexpr int kKeyframes = 16;
 constexpr double kNoise_m = 0.05;
 
-enum Class { kPole, kVehicle, kBuilding };
+enum Class { kBuilding, kPole, kVehicle };  // the first has no bias
 
-ClassTable makeTable() {
+/// A class has a bias unless its landmarks move by more than 0.4 m.
+ClassTable makeTable(double building_moves_m = 2.0, double vehicle_moves_m = 0.4) {
   std::vector<ClassInfo> classes(3);
   classes[kPole].name = "pole";
-  classes[kVehicle] = {1, "vehicle", "#000000", false, 1.0, 0.4, 0.4, Transition::kGaussian, 0.4};
-  classes[kBuilding] = {2, "building", "#000000", true, 1.0, 0.4, 0.4, Transition::kGaussian, 2.0};
+  classes[kVehicle] = {1, "vehicle", "#000000", false, 1.0, 0.4, 0.4, Transition::kGaussian, vehicle_moves_m};
+  classes[kBuilding] = {2, "building", "#000000", true, 1.0, 0.4, 0.4, Transition::kGaussian, building_moves_m};
   return ClassTable(classes, "test");
 }
 
@@ -139,6 +141,36 @@ TEST(CentroidBiasTest, ExtendedObjectsAreLeftAlone) {
   detection.class_index = kBuilding;
   detection.position_m = {20.0, 3.0, 1.0};
   EXPECT_EQ(bias.corrected(detection).position_m, detection.position_m);
+}
+
+/// What is left of a bias for a program with another class table.
+CentroidBias loaded(CentroidBias& saved, const ClassTable& classes) {
+  StateArchive writing;
+  saved.transfer(writing);
+  StateArchive reading(writing.written());
+  CentroidBias result({}, classes);
+  result.transfer(reading);
+  return result;
+}
+
+TEST(CentroidBiasTest, ItIsKeptByClassWhicheverOfThemHaveOne) {
+  CentroidBias bias = estimate(3, 0.0, true);
+  const CentroidBias same = loaded(bias, makeTable());
+  const CentroidBias all = loaded(bias, makeTable(0.4, 0.4));
+  const CentroidBias swapped = loaded(bias, makeTable(0.4, 2.0));
+  for (const double range_m : {5.0, 20.0, 35.0}) {
+    EXPECT_EQ(same.at(kVehicle, range_m).range_m, bias.at(kVehicle, range_m).range_m);
+    EXPECT_EQ(same.at(kPole, range_m).height_variance_m2, bias.at(kPole, range_m).height_variance_m2);
+    EXPECT_NEAR(all.at(kVehicle, range_m).range_m, bias.at(kVehicle, range_m).range_m, 1e-9);
+    EXPECT_NEAR(all.at(kPole, range_m).height_m, bias.at(kPole, range_m).height_m, 1e-9);
+    for (const CentroidBias* other : {&all, &swapped}) {
+      EXPECT_EQ(other->at(kBuilding, range_m).range_m, 0.0);
+      EXPECT_GT(other->at(kBuilding, range_m).range_variance_m2, 0.1);
+    }
+    EXPECT_EQ(swapped.at(kVehicle, range_m).range_m, 0.0);
+    EXPECT_EQ(swapped.at(kVehicle, range_m).range_variance_m2, 0.0);
+    EXPECT_NEAR(swapped.at(kPole, range_m).range_m, trueBias(kPole, range_m), 0.05);
+  }
 }
 
 TEST(CentroidBiasTest, SwitchedOffItDoesNothing) {

@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/mapping/landmark_propagation.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/common/state_archive.h"
@@ -60,21 +62,42 @@ TEST(LandmarkPropagationTest, LandmarksComeInTheFrameOfTheNextSubmap) {
   MapHypothesis best;
   best.offset.mean = {0.5, 0.0, 0.0, 0.0};  // the odometry is half a metre behind
   best.offset.cov.diagonal().head<3>().setConstant(0.01);
-  propagation.endSubmap(0, originOf(0), {makeLandmark(3, 40.0, 0)}, best);
+  auto hidden = std::make_shared<TrackedLandmark>();
+  hidden->id = 3;
+  best.landmarks.push_back({hidden, {0.0, 0.25, 1.0}});
+  MixtureLandmark landmark = makeLandmark(3, 40.0, 0);
+  landmark.first_submap = -4;
+  propagation.endSubmap(0, originOf(0), {landmark}, best);
   const std::vector<HypothesisLandmark> near = propagation.beginSubmap(1, originOf(1));
   ASSERT_EQ(near.size(), 1u);
   EXPECT_TRUE(near[0]->position.mean_m.isApprox(Eigen::Vector3d(9.5, 2.0, 0.5), 1e-12));
   EXPECT_TRUE(near[0]->position.cov_m2.isApprox(0.05 * Eigen::Matrix3d::Identity(), 1e-12));
   EXPECT_TRUE(near[0]->is_from_earlier_submap);
   EXPECT_EQ(near[0]->observations, 7);
+  EXPECT_EQ(near[0]->first_submap, -4);
   EXPECT_NEAR(near[0].existence.log_odds, std::log(9.0), 1e-12);
+  EXPECT_EQ(near[0].existence.visible_prob, 0.25);
+}
+
+TEST(LandmarkPropagationTest, CovariancesTurnWithTheFrame) {
+  LandmarkPropagation propagation = makePropagation();
+  MixtureLandmark landmark = makeLandmark(1, 40.0, 0);
+  landmark.position.cov_m2.diagonal() << 0.25, 0.04, 0.09;
+  propagation.endSubmap(0, originOf(0), {landmark}, {});
+  Pose left = originOf(1);
+  left.rotation = Eigen::AngleAxisd(0.5 * M_PI, Eigen::Vector3d::UnitZ());
+  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(1, left);
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_TRUE(near[0]->position.mean_m.isApprox(Eigen::Vector3d(2.0, -10.0, 0.5), 1e-12));
+  EXPECT_TRUE(near[0]->position.cov_m2.diagonal().isApprox(Eigen::Vector3d(0.04, 0.25, 0.09), 1e-12));
 }
 
 TEST(LandmarkPropagationTest, WhatTheSubmapCannotSeeRestsUntilItIsNearAgain) {
   LandmarkPropagation propagation = makePropagation();
   const double behind_m = 2.0 * kLength_m - kReach_m;  // at the beginning of submap 2 just out of reach
-  const std::vector<MixtureLandmark> landmarks = {makeLandmark(1, behind_m - 0.5, 0),
-                                                  makeLandmark(2, behind_m + 0.5, 0), makeLandmark(3, 20.0, 0)};
+  std::vector<MixtureLandmark> landmarks = {makeLandmark(1, behind_m - 0.5, 0), makeLandmark(2, behind_m + 0.5, 0),
+                                            makeLandmark(3, 20.0, 0)};
+  landmarks[1].position.mean_m.z() += 20.0;  // heights don't count
   propagation.endSubmap(0, originOf(0), landmarks, {});
   std::vector<HypothesisLandmark> near = driveOn(propagation, 1, 2);
   ASSERT_EQ(near.size(), 2u);
@@ -94,8 +117,36 @@ TEST(LandmarkPropagationTest, WhatTheSubmapBeforeSawStaysHoweverFarItIs) {
   EXPECT_EQ(propagation.beginSubmap(1, originOf(1)).size(), 1u);
 }
 
+TEST(LandmarkPropagationTest, IdsRiseWhateverHasRested) {
+  LandmarkPropagation propagation = makePropagation();
+  propagation.endSubmap(0, originOf(0), {makeLandmark(1, 50.0, 0), makeLandmark(2, -20.0, 0), makeLandmark(3, 50.0, 0)},
+                        {});
+  ASSERT_EQ(driveOn(propagation, 1, 3).size(), 2u);
+  propagation.endSubmap(3, originOf(3), {makeLandmark(1, -40.0, 0), makeLandmark(3, -40.0, 0), makeLandmark(4, 0.0, 3)},
+                        {});
+  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(4, originOf(1));
+  ASSERT_EQ(near.size(), 4u);
+  for (LandmarkId id = 1; id <= 4; ++id) EXPECT_EQ(near[id - 1]->id, id);
+}
+
+TEST(LandmarkPropagationTest, NothingIsLeftOfForgottenSurroundings) {
+  LandmarkPropagation propagation = makePropagation();
+  propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0), makeLandmark(2, 60.0, 0)}, {});
+  ASSERT_EQ(driveOn(propagation, 1, 4).size(), 1u);  // the other one rests
+  propagation.clear();
+  propagation.endSubmap(4, originOf(4), {}, {});
+  EXPECT_TRUE(propagation.beginSubmap(5, originOf(1)).empty());
+  propagation.endSubmap(5, originOf(5), {makeLandmark(3, 0.0, 5)}, {});
+  propagation.clear();
+  EXPECT_TRUE(propagation.beginSubmap(6, originOf(5)).empty());
+}
+
 TEST(LandmarkPropagationTest, LandmarksAreForgottenWhenNotSeenForLong) {
   LandmarkPropagation propagation = makePropagation();
+  propagation.endSubmap(11, originOf(11), {makeLandmark(1, 0.0, 0), makeLandmark(2, 0.0, 1)}, {});
+  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(12, originOf(11));
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_EQ(near[0]->id, 2u);
   const auto seen_again = [&](int submaps) {
     propagation.clear();
     propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0)}, {});
@@ -111,29 +162,50 @@ TEST(LandmarkPropagationTest, AnIdIsNotTwiceInASubmap) {
   LandmarkPropagation propagation = makePropagation();
   propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0), makeLandmark(2, 20.0, 0)}, {});
   driveOn(propagation, 1, 4);
-  propagation.endSubmap(4, originOf(4), {makeLandmark(1, 5.0, 4)}, {});  // as when the earlier map knows it
-  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(5, originOf(4));
-  ASSERT_EQ(near.size(), 1u);
-  EXPECT_NEAR(near[0]->position.mean_m.x(), 5.0, 1e-12);
+  propagation.endSubmap(4, originOf(4), {makeLandmark(1, 5.0, 4)}, {});
+  const std::vector<HypothesisLandmark> near = propagation.beginSubmap(5, originOf(2));
+  ASSERT_EQ(near.size(), 2u);
+  EXPECT_EQ(near[0]->id, 1u);
+  EXPECT_NEAR(near[0]->position.mean_m.x(), 2.0 * kLength_m + 5.0, 1e-12);
   EXPECT_EQ(near[0]->last_submap, 4);
+  EXPECT_EQ(near[1]->id, 2u);
+}
+
+LandmarkPropagation restored(LandmarkPropagation& saved) {
+  StateArchive writing;
+  saved.transfer(writing);
+  StateArchive reading(writing.written());
+  LandmarkPropagation result = makePropagation();
+  result.transfer(reading);
+  return result;
 }
 
 TEST(LandmarkPropagationTest, RestingLandmarksOutliveTheProgram) {
   LandmarkPropagation propagation = makePropagation();
   propagation.endSubmap(0, originOf(0), {makeLandmark(1, 0.0, 0), makeLandmark(2, 60.0, 0)}, {});
   driveOn(propagation, 1, 4);
-  StateArchive writing;
-  propagation.transfer(writing);
-  StateArchive reading(writing.written());
-  LandmarkPropagation restored = makePropagation();
-  restored.transfer(reading);
-  for (LandmarkPropagation* each : {&propagation, &restored}) {
-    each->endSubmap(4, originOf(4), {}, {});
-    const std::vector<HypothesisLandmark> near = each->beginSubmap(5, originOf(1));
-    ASSERT_EQ(near.size(), 1u);
-    EXPECT_EQ(near[0]->id, 1u);
-    EXPECT_NEAR(near[0]->position.mean_m.x(), -kLength_m, 1e-12);
-  }
+  LandmarkPropagation again = restored(propagation);
+  again.endSubmap(4, originOf(4), {}, {});
+  const std::vector<HypothesisLandmark> near = again.beginSubmap(5, originOf(1));
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_EQ(near[0]->id, 1u);
+  EXPECT_NEAR(near[0]->position.mean_m.x(), -kLength_m, 1e-12);
+}
+
+TEST(LandmarkPropagationTest, LandmarksBetweenSubmapsOutliveTheProgram) {
+  LandmarkPropagation propagation = makePropagation();
+  MapHypothesis best;
+  best.offset.mean = {0.5, 0.0, 0.0, 0.0};
+  best.offset.cov.diagonal().setConstant(0.01);
+  propagation.endSubmap(1, originOf(1), {makeLandmark(1, 10.0, 1)}, best);
+  LandmarkPropagation again = restored(propagation);
+  const std::vector<HypothesisLandmark> expected = propagation.beginSubmap(2, originOf(2));
+  const std::vector<HypothesisLandmark> near = again.beginSubmap(2, originOf(2));
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_NEAR(near[0]->position.mean_m.x(), -20.5, 1e-12);
+  EXPECT_EQ(near[0]->position.mean_m, expected[0]->position.mean_m);
+  EXPECT_EQ(near[0]->position.cov_m2, expected[0]->position.cov_m2);
+  EXPECT_EQ(near[0].existence.log_odds, expected[0].existence.log_odds);
 }
 
 }  // namespace

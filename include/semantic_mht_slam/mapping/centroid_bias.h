@@ -86,13 +86,17 @@ class CentroidBias {
   void transfer(StateArchive& archive);
 
  private:
-  void solve();
+  void forget();
+  /// Takes what another one has learned, whose classes with a bias have these places. Classes that had none are as at
+  /// the beginning; what is known of the others holds whatever the bias of those was that have none any more.
+  void adopt(const std::vector<int>& place, const Eigen::MatrixXd& information, const Eigen::VectorXd& vector);
+  bool solve();
 
   BiasConfig config_;
-  std::vector<double> max_variance_m2_;  ///< of each class
-  std::vector<int> place_;               ///< of each class among those that have a bias; -1: has none
-  int biased_count_ = 0;                 ///< classes that have one
-  Eigen::MatrixXd information_;          ///< of the coefficients
+  std::vector<double> stddev_m_;  ///< of each class, as the class table has it
+  std::vector<int> place_;        ///< of each class among those that have a bias; -1: has none
+  int biased_count_ = 0;          ///< classes that have one
+  Eigen::MatrixXd information_;   ///< of the coefficients
   Eigen::VectorXd vector_;
   Eigen::VectorXd mean_;
   Eigen::MatrixXd cov_;
