@@ -169,8 +169,10 @@ TEST(CentroidBiasTest, ItIsKeptByClassWhicheverOfThemHaveOne) {
     }
     EXPECT_EQ(swapped.at(kVehicle, range_m).range_m, 0.0);
     EXPECT_EQ(swapped.at(kVehicle, range_m).range_variance_m2, 0.0);
-    EXPECT_NEAR(swapped.at(kPole, range_m).range_m, trueBias(kPole, range_m), 0.05);
+    EXPECT_NEAR(swapped.at(kPole, range_m).range_m, bias.at(kPole, range_m).range_m, 1e-9);
   }
+  EXPECT_NEAR(all.odometryScale(), bias.odometryScale(), 1e-9);
+  EXPECT_NEAR(swapped.odometryScale(), bias.odometryScale(), 1e-9);
 }
 
 TEST(CentroidBiasTest, SwitchedOffItDoesNothing) {
