@@ -67,50 +67,6 @@ std::vector<LevelledPoint> levelled(const std::vector<AlignmentPoint>& points, c
   return result;
 }
 
-using Points = std::vector<LevelledPoint>::const_iterator;
-
-/// Where each class begins in sorted points, and the end.
-std::vector<Points> classBegins(const std::vector<LevelledPoint>& points, int class_count) {
-  std::vector<Points> begins;
-  for (int c = 0; c <= class_count; ++c) {
-    begins.push_back(std::lower_bound(points.begin(), points.end(), c,
-                                      [](const LevelledPoint& p, int index) { return p.class_index < index; }));
-  }
-  return begins;
-}
-
-/// Of sorted points of one class: the first one from `x_m` on.
-Points firstFrom(double x_m, Points begin, Points end) {
-  return std::lower_bound(begin, end, x_m, [](const LevelledPoint& p, double x) { return p.position_m.x() < x; });
-}
-
-/// Landmarks of each class per cubic metre around where the detections of that class are expected. Counted there and
-/// not over the whole map, because objects stand in rows along streets and chance matches are as frequent as the rows
-/// are dense.
-std::vector<double> classDensities(const AlignmentProblem& problem, const std::vector<Points>& begins,
-                                   const JointAlignmentConfig& config) {
-  const int class_count = static_cast<int>(begins.size()) - 1;
-  const double radius_m = config.density_radius_m;
-  std::vector<int> detections(class_count, 0);
-  std::vector<int> neighbours(class_count, 0);
-  for (const LevelledPoint& detection : problem.detections) {
-    const int c = detection.class_index;
-    ++detections[c];
-    const double x_end_m = detection.position_m.x() + radius_m;
-    Points landmark = firstFrom(detection.position_m.x() - radius_m, begins[c], begins[c + 1]);
-    for (; landmark != begins[c + 1] && landmark->position_m.x() <= x_end_m; ++landmark) {
-      const double distance_sq = (landmark->position_m - detection.position_m).head<2>().squaredNorm();
-      if (distance_sq < radius_m * radius_m) ++neighbours[c];
-    }
-  }
-  const double volume_m3 = M_PI * radius_m * radius_m * config.density_height_m;
-  std::vector<double> densities;
-  for (int c = 0; c < class_count; ++c) {
-    densities.push_back(std::max(1.0, neighbours[c] / std::max(1.0, 1.0 * detections[c])) / volume_m3);
-  }
-  return densities;
-}
-
 /// log P(seen | true) of two classes. Only classes that are both static or both movable are mistaken for each other.
 std::vector<std::vector<double>> logClassProbs(const ClassTable& classes, double confusion_prob) {
   std::vector<std::vector<double>> result(classes.size(), std::vector<double>(classes.size(), kImpossible));
@@ -157,31 +113,72 @@ double reach(const LevelledPoint& detection, const AlignmentCandidate& candidate
                    (largestHorizontalVariance(detection.cov_m2) + largestHorizontalVariance(candidate.cov_m2)));
 }
 
-/// What bounds the reach of all matches with a class: most pairs are too far apart for any.
-struct ReachBound {
-  double least_det = std::numeric_limits<double>::infinity();  ///< of the landmarks' covariances
+using Points = std::vector<LevelledPoint>::const_iterator;
+
+/// The landmarks of a class, which are sorted by x, and what bounds the reach of all matches with them: most pairs are
+/// too far apart for any.
+struct ClassLandmarks {
+  Points begin;
+  Points end;
+  double least_det = std::numeric_limits<double>::infinity();  ///< of their covariances
   double largest_variance_m2 = 0.0;                            ///< of theirs, horizontal
+
+  /// The first one from `x_m` on.
+  Points firstFrom(double x_m) const {
+    return std::lower_bound(begin, end, x_m, [](const LevelledPoint& p, double x) { return p.position_m.x() < x; });
+  }
 };
 
-/// At range 0: the range adds to the vertical variance alone, which makes determinants larger.
-std::vector<ReachBound> reachBounds(const std::vector<LevelledPoint>& landmarks, const ClassTable& classes,
-                                    const JointAlignmentConfig& config) {
-  std::vector<ReachBound> bounds(static_cast<std::size_t>(classes.size()));
-  for (const LevelledPoint& landmark : landmarks) {
-    ReachBound& bound = bounds[static_cast<std::size_t>(landmark.class_index)];
-    const Eigen::Matrix3d cov_m2 = landmark.cov_m2 + extraCov(classes[landmark.class_index], 0.0, config);
-    bound.least_det = std::min(bound.least_det, cov_m2.determinant());
-    bound.largest_variance_m2 = std::max(bound.largest_variance_m2, largestHorizontalVariance(cov_m2));
+/// Of every class. Bounds at range 0: the range adds to the vertical variance alone, which makes determinants larger.
+std::vector<ClassLandmarks> landmarksByClass(const std::vector<LevelledPoint>& landmarks, const ClassTable& classes,
+                                             const JointAlignmentConfig& config) {
+  std::vector<ClassLandmarks> result;
+  Points end = landmarks.begin();
+  for (int c = 0; c < classes.size(); ++c) {
+    ClassLandmarks known{end, end};
+    for (; end != landmarks.end() && end->class_index == c; ++end) {
+      const Eigen::Matrix3d cov_m2 = end->cov_m2 + extraCov(classes[c], 0.0, config);
+      known.least_det = std::min(known.least_det, cov_m2.determinant());
+      known.largest_variance_m2 = std::max(known.largest_variance_m2, largestHorizontalVariance(cov_m2));
+    }
+    known.end = end;
+    result.push_back(known);
   }
-  return bounds;
+  return result;
 }
 
-/// As `reach`, for the landmark that reaches farthest.
-double reach(const LevelledPoint& detection, double log_odds, const ReachBound& bound) {
-  const double det = detection.cov_m2.determinant() + bound.least_det;
+/// As `reach`, for the landmark of a class that reaches farthest.
+double reach(const LevelledPoint& detection, double log_odds, const ClassLandmarks& known) {
+  const double det = detection.cov_m2.determinant() + known.least_det;
   const double log_peak_odds = log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(det));
   if (log_peak_odds <= 0.0) return -1.0;
-  return std::sqrt(2.0 * log_peak_odds * (largestHorizontalVariance(detection.cov_m2) + bound.largest_variance_m2));
+  return std::sqrt(2.0 * log_peak_odds * (largestHorizontalVariance(detection.cov_m2) + known.largest_variance_m2));
+}
+
+/// Landmarks of each class per cubic metre around where the detections of that class are expected. Counted there and
+/// not over the whole map, because objects stand in rows along streets and chance matches are as frequent as the rows
+/// are dense.
+std::vector<double> classDensities(const AlignmentProblem& problem, const std::vector<ClassLandmarks>& by_class,
+                                   const JointAlignmentConfig& config) {
+  const double radius_m = config.density_radius_m;
+  std::vector<int> detections(by_class.size(), 0);
+  std::vector<int> neighbours(by_class.size(), 0);
+  for (const LevelledPoint& detection : problem.detections) {
+    const auto c = static_cast<std::size_t>(detection.class_index);
+    ++detections[c];
+    const double x_end_m = detection.position_m.x() + radius_m;
+    Points landmark = by_class[c].firstFrom(detection.position_m.x() - radius_m);
+    for (; landmark != by_class[c].end && landmark->position_m.x() <= x_end_m; ++landmark) {
+      const double distance_sq = (landmark->position_m - detection.position_m).head<2>().squaredNorm();
+      if (distance_sq < radius_m * radius_m) ++neighbours[c];
+    }
+  }
+  const double volume_m3 = M_PI * radius_m * radius_m * config.density_height_m;
+  std::vector<double> densities;
+  for (std::size_t c = 0; c < by_class.size(); ++c) {
+    densities.push_back(std::max(1.0, neighbours[c] / std::max(1.0, 1.0 * detections[c])) / volume_m3);
+  }
+  return densities;
 }
 
 /// Largest gaps that offsets inside the window can close for a detection.
@@ -196,23 +193,24 @@ bool isWithin(const Eigen::Vector3d& gap_m, const Eigen::Vector3d& closable_m, d
 }
 
 /// Landmarks that a detection may be; `log_odds` is what holds for all of them.
-std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem, const std::vector<Points>& begins,
+std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem,
+                                               const std::vector<ClassLandmarks>& by_class,
                                                const LevelledPoint& detection, const ClassTable& classes,
                                                const JointAlignmentConfig& config, double log_odds,
-                                               const std::vector<ReachBound>& bounds,
                                                const std::vector<std::vector<double>>& log_class_probs) {
   const double range_m = detection.position_m.head<2>().norm();
   const Eigen::Vector3d closable_m = closable(detection, problem.window);
   std::vector<AlignmentCandidate> candidates;
   for (int c = 0; c < classes.size(); ++c) {
     const double log_class_prob = log_class_probs[c][detection.class_index];
-    const double farthest_m = reach(detection, log_odds + log_class_prob, bounds[static_cast<std::size_t>(c)]);
+    const ClassLandmarks& known = by_class[static_cast<std::size_t>(c)];
+    const double farthest_m = reach(detection, log_odds + log_class_prob, known);
     if (log_class_prob == kImpossible || farthest_m <= 0.0) continue;
     const double farthest_x_m = closable_m.x() + farthest_m;
     const double x_end_m = detection.position_m.x() + farthest_x_m;
     const Eigen::Matrix3d extra_cov_m2 = extraCov(classes[c], range_m, config);
-    Points landmark = firstFrom(detection.position_m.x() - farthest_x_m, begins[c], begins[c + 1]);
-    for (; landmark != begins[c + 1] && landmark->position_m.x() <= x_end_m; ++landmark) {
+    Points landmark = known.firstFrom(detection.position_m.x() - farthest_x_m);
+    for (; landmark != known.end && landmark->position_m.x() <= x_end_m; ++landmark) {
       const Eigen::Vector3d gap_m = landmark->position_m - detection.position_m;
       if (!isWithin(gap_m, closable_m, farthest_m)) continue;
       AlignmentCandidate candidate;
@@ -250,16 +248,15 @@ AlignmentProblem makeAlignmentProblem(const std::vector<AlignmentPoint>& detecti
   problem.window.head<3>() = problem.window.head<3>().cwiseMin(config.max_window_m);
   problem.window(3) = std::min(problem.window(3), M_PI);
 
-  const std::vector<Points> begins = classBegins(problem.landmarks, classes.size());
-  const std::vector<double> densities = classDensities(problem, begins, config);
+  const std::vector<ClassLandmarks> by_class = landmarksByClass(problem.landmarks, classes, config);
+  const std::vector<double> densities = classDensities(problem, by_class, config);
   const std::vector<std::vector<double>> log_class_probs = logClassProbs(classes, config.confusion_prob);
-  const std::vector<ReachBound> bounds = reachBounds(problem.landmarks, classes, config);
   for (const LevelledPoint& detection : problem.detections) {
     const ClassInfo& info = classes[detection.class_index];
     const double match_prob = info.is_static ? config.static_match_prob : config.movable_match_prob;
     const double log_odds = std::log(match_prob / (1.0 - match_prob)) - std::log(densities[detection.class_index]);
     problem.candidates.push_back(
-        findCandidates(problem, begins, detection, classes, config, log_odds, bounds, log_class_probs));
+        findCandidates(problem, by_class, detection, classes, config, log_odds, log_class_probs));
     problem.is_static.push_back(info.is_static);
     problem.is_covered.push_back(hasLandmarkAround(problem, detection, config.density_radius_m));
   }

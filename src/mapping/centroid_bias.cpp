@@ -115,10 +115,9 @@ void CentroidBias::adopt(const std::vector<int>& place, const Eigen::MatrixXd& i
   forget();
   const BiasLayout ours{biased_count_};
   const BiasLayout theirs{static_cast<int>(std::count_if(place.begin(), place.end(), [](int p) { return p >= 0; }))};
-  std::vector<int>
-      order;  // their coefficients: those that are ours, too, then those of classes that have none any more
-  std::vector<int> our_place;
-  std::vector<int> gone;
+  std::vector<int> order;      // their coefficients: first those that are ours, too
+  std::vector<int> our_place;  // of these
+  std::vector<int> gone;       // those of classes that have no bias any more
   for (std::size_t c = 0; c < place_.size(); ++c) {
     for (int i = 0; i < BiasLayout::kPerClass && place[c] >= 0; ++i) {
       (place_[c] < 0 ? gone : order).push_back(theirs.range(place[c], 0) + i);
