@@ -88,9 +88,15 @@ bool hasLandmarkAround(const AlignmentProblem& problem, const LevelledPoint& det
   });
 }
 
-double largestHorizontalVariance(const Eigen::Matrix3d& cov_m2) {
+/// What bounds the reach of matches with a point.
+struct Spread {
+  double det = std::numeric_limits<double>::infinity();  ///< of its covariance
+  double largest_variance_m2 = 0.0;                      ///< horizontal
+};
+
+Spread spreadOf(const Eigen::Matrix3d& cov_m2) {
   const double mean = 0.5 * (cov_m2(0, 0) + cov_m2(1, 1));
-  return mean + std::hypot(0.5 * (cov_m2(0, 0) - cov_m2(1, 1)), cov_m2(0, 1));
+  return {cov_m2.determinant(), mean + std::hypot(0.5 * (cov_m2(0, 0) - cov_m2(1, 1)), cov_m2(0, 1))};
 }
 
 /// What a detection at a given range adds to the covariance of the residual, apart from its own.
@@ -105,23 +111,20 @@ Eigen::Matrix3d extraCov(const ClassInfo& landmark_class, double range_m, const 
 
 /// Horizontal distance beyond which a match is no better than none, whatever the heading; negative if there is no such
 /// match. Bounds the density by det(A + B) >= det A + det B and the distance by the largest eigenvalues.
-double reach(const LevelledPoint& detection, const AlignmentCandidate& candidate) {
-  const double det = detection.cov_m2.determinant() + candidate.cov_m2.determinant();
-  const double log_peak_odds = candidate.log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(det));
+double reach(const Spread& detection, const Spread& landmark, double log_odds) {
+  const double log_peak_odds = log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(detection.det + landmark.det));
   if (log_peak_odds <= 0.0) return -1.0;
-  return std::sqrt(2.0 * log_peak_odds *
-                   (largestHorizontalVariance(detection.cov_m2) + largestHorizontalVariance(candidate.cov_m2)));
+  return std::sqrt(2.0 * log_peak_odds * (detection.largest_variance_m2 + landmark.largest_variance_m2));
 }
 
 using Points = std::vector<LevelledPoint>::const_iterator;
 
-/// The landmarks of a class, which are sorted by x, and what bounds the reach of all matches with them: most pairs are
-/// too far apart for any.
+/// The landmarks of a class, which are sorted by x, and the spread of one that would reach as far as any of them: most
+/// pairs are too far apart for a match.
 struct ClassLandmarks {
   Points begin;
   Points end;
-  double least_det = std::numeric_limits<double>::infinity();  ///< of their covariances
-  double largest_variance_m2 = 0.0;                            ///< of theirs, horizontal
+  Spread farthest;
 
   /// The first one from `x_m` on.
   Points firstFrom(double x_m) const {
@@ -129,30 +132,22 @@ struct ClassLandmarks {
   }
 };
 
-/// Of every class. Bounds at range 0: the range adds to the vertical variance alone, which makes determinants larger.
+/// Of every class. Spreads at range 0: the range adds to the vertical variance alone, which makes determinants larger.
 std::vector<ClassLandmarks> landmarksByClass(const std::vector<LevelledPoint>& landmarks, const ClassTable& classes,
                                              const JointAlignmentConfig& config) {
   std::vector<ClassLandmarks> result;
   Points end = landmarks.begin();
   for (int c = 0; c < classes.size(); ++c) {
-    ClassLandmarks known{end, end};
+    ClassLandmarks known{end, end, {}};
     for (; end != landmarks.end() && end->class_index == c; ++end) {
-      const Eigen::Matrix3d cov_m2 = end->cov_m2 + extraCov(classes[c], 0.0, config);
-      known.least_det = std::min(known.least_det, cov_m2.determinant());
-      known.largest_variance_m2 = std::max(known.largest_variance_m2, largestHorizontalVariance(cov_m2));
+      const Spread spread = spreadOf(end->cov_m2 + extraCov(classes[c], 0.0, config));
+      known.farthest.det = std::min(known.farthest.det, spread.det);
+      known.farthest.largest_variance_m2 = std::max(known.farthest.largest_variance_m2, spread.largest_variance_m2);
     }
     known.end = end;
     result.push_back(known);
   }
   return result;
-}
-
-/// As `reach`, for the landmark of a class that reaches farthest.
-double reach(const LevelledPoint& detection, double log_odds, const ClassLandmarks& known) {
-  const double det = detection.cov_m2.determinant() + known.least_det;
-  const double log_peak_odds = log_odds - 0.5 * (3.0 * kLogTwoPi + std::log(det));
-  if (log_peak_odds <= 0.0) return -1.0;
-  return std::sqrt(2.0 * log_peak_odds * (largestHorizontalVariance(detection.cov_m2) + known.largest_variance_m2));
 }
 
 /// Landmarks of each class per cubic metre around where the detections of that class are expected. Counted there and
@@ -200,11 +195,12 @@ std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem,
                                                const std::vector<std::vector<double>>& log_class_probs) {
   const double range_m = detection.position_m.head<2>().norm();
   const Eigen::Vector3d closable_m = closable(detection, problem.window);
+  const Spread spread = spreadOf(detection.cov_m2);
   std::vector<AlignmentCandidate> candidates;
   for (int c = 0; c < classes.size(); ++c) {
     const double log_class_prob = log_class_probs[c][detection.class_index];
     const ClassLandmarks& known = by_class[static_cast<std::size_t>(c)];
-    const double farthest_m = reach(detection, log_odds + log_class_prob, known);
+    const double farthest_m = reach(spread, known.farthest, log_odds + log_class_prob);
     if (log_class_prob == kImpossible || farthest_m <= 0.0) continue;
     const double farthest_x_m = closable_m.x() + farthest_m;
     const double x_end_m = detection.position_m.x() + farthest_x_m;
@@ -218,7 +214,7 @@ std::vector<AlignmentCandidate> findCandidates(const AlignmentProblem& problem,
       candidate.is_same_class = c == detection.class_index;
       candidate.log_odds = log_odds + log_class_prob;
       candidate.cov_m2 = landmark->cov_m2 + extra_cov_m2;
-      candidate.reach_m = reach(detection, candidate);
+      candidate.reach_m = reach(spread, spreadOf(candidate.cov_m2), candidate.log_odds);
       if (candidate.reach_m > 0.0 && isWithin(gap_m, closable_m, candidate.reach_m)) candidates.push_back(candidate);
     }
   }

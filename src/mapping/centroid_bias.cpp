@@ -100,9 +100,9 @@ void CentroidBias::add(const BiasStretch& stretch, double odometry_stddev_m, dou
     used.observations.push_back(observation);
     used.observations.back().class_index = place;
   }
-  const BiasInformation more = biasInformation(used, layout, noise, {information_, vector_});
-  if (!more.matrix.allFinite() || !more.vector.allFinite()) return;
   const BiasInformation before{information_, vector_};
+  const BiasInformation more = biasInformation(used, layout, noise, before);
+  if (!more.matrix.allFinite() || !more.vector.allFinite()) return;
   information_ += more.matrix;
   vector_ += more.vector;
   if (solve()) return;

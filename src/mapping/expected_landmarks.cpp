@@ -25,14 +25,9 @@ bool isExpected(const MixtureLandmark& earlier, double average_observations) {
 
 HypothesisLandmark expectedLandmark(const MixtureLandmark& earlier, int index, const Gaussian3& position,
                                     double driven_m, const ClassTable& classes, const JointAlignmentConfig& config) {
-  auto landmark = std::make_shared<TrackedLandmark>();
-  landmark->id = earlier.id;
+  auto landmark = std::make_shared<TrackedLandmark>(trackedFrom(earlier));
   landmark->position = position;
-  landmark->class_probs = earlier.class_probs;
-  landmark->observations = earlier.observations;
   landmark->is_from_earlier_submap = true;
-  landmark->first_submap = earlier.first_submap;
-  landmark->last_submap = earlier.last_submap;
   landmark->updated_at_m = driven_m;
   landmark->earlier = index;
   landmark->is_expected = true;

@@ -16,18 +16,11 @@ double visibilityOf(LandmarkId id, const MapHypothesis& hypothesis) {
   return landmark != nullptr ? landmark->existence.visible_prob : 1.0;
 }
 
-HypothesisLandmark tracked(const MixtureLandmark& landmark, const MapHypothesis& best) {
-  auto result = std::make_shared<TrackedLandmark>();
-  result->id = landmark.id;
-  result->position = landmark.position;
-  result->class_probs = landmark.class_probs;
-  result->observations = landmark.observations;
-  result->first_submap = landmark.first_submap;
-  result->last_submap = landmark.last_submap;
+HypothesisLandmark goingOn(const MixtureLandmark& landmark, const MapHypothesis& best) {
   Existence existence;
   existence.log_odds = logit(std::clamp(landmark.existence_prob, 0.001, 0.999));
   existence.visible_prob = visibilityOf(landmark.id, best);
-  return {std::move(result), existence};
+  return {std::make_shared<const TrackedLandmark>(trackedFrom(landmark)), existence};
 }
 
 bool isBefore(const HypothesisLandmark& a, const HypothesisLandmark& b) {
@@ -52,7 +45,7 @@ void LandmarkPropagation::endSubmap(int submap, const Pose& T_odom_submap,
   const int oldest = submap - propagated_submaps_;
   landmarks_.clear();
   for (const MixtureLandmark& landmark : landmarks) {
-    if (landmark.last_submap >= oldest) landmarks_.push_back(tracked(landmark, best));
+    if (landmark.last_submap >= oldest) landmarks_.push_back(goingOn(landmark, best));
   }
   const auto of_submap = static_cast<std::ptrdiff_t>(landmarks_.size());
   for (HypothesisLandmark& landmark : resting_) {

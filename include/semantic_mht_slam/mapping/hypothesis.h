@@ -67,6 +67,18 @@ struct TrackedLandmark {
   }
 };
 
+/// What is known of a fused landmark, as a hypothesis holds it.
+inline TrackedLandmark trackedFrom(const MixtureLandmark& landmark) {
+  TrackedLandmark result;
+  result.id = landmark.id;
+  result.position = landmark.position;
+  result.class_probs = landmark.class_probs;
+  result.observations = landmark.observations;
+  result.first_submap = landmark.first_submap;
+  result.last_submap = landmark.last_submap;
+  return result;
+}
+
 /// A landmark as one hypothesis has it. What its detections tell is shared between hypotheses until the next one; its
 /// existence changes with every frame that does not show it.
 struct HypothesisLandmark {
