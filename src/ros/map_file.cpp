@@ -142,6 +142,7 @@ class MapReader {
     map.submaps = header.submaps;
     map.landmarks = header.landmarks;
     map.has_same_parameters = header.config == parametersOf(config_.slam);
+    map.state.source = path_;
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));
     for (const rosbag::MessageInstance& instance : view) {
       const auto section = instantiate<MapSection>(instance);

@@ -74,11 +74,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
   try {
     const LoadedMap map = readMapFile(request.path, config_, classes_, ros::ok);
     has_same_parameters = map.has_same_parameters;
-    try {
-      loaded = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
-    } catch (const std::exception& error) {
-      throw InputError(request.path + ": " + error.what());
-    }
+    loaded = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
   } catch (const InputError& error) {
     response.message = std::string(error.what()) + "; the running map stays";
     return true;

@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/slam/slam_state.h"
 
 #include <algorithm>
+#include <exception>
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/state_archive.h"
@@ -97,6 +98,15 @@ SlamState Slam::snapshot() const {
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state, const KeepReading& keep_reading)
     : Slam(config, classes) {
+  try {
+    restore(state, keep_reading);
+  } catch (const std::exception& error) {
+    if (state.source.empty()) throw;
+    throw InputError(state.source + ": " + error.what());
+  }
+}
+
+void Slam::restore(const SlamState& state, const KeepReading& keep_reading) {
   for (const Section& section : sections()) {
     const auto found = std::find_if(state.sections.begin(), state.sections.end(),
                                     [&](const StateSection& other) { return other.name == section.name; });

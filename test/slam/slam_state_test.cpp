@@ -110,6 +110,8 @@ TEST(SlamStateErrorTest, BrokenStatesAreRefusedWithAReason) {
     const int newer = ++state.sections[i].version;
     expectInputError([&] { Slam(config, classes, state); },
                      {"section '" + good.sections[i].name, "has version " + std::to_string(newer)});
+    state.source = "town/map.bag";
+    expectInputError([&] { Slam(config, classes, state); }, {"town/map.bag: the section '", "has version "});
     state = good;
     state.sections.erase(state.sections.begin() + static_cast<std::ptrdiff_t>(i));
     expectInputError([&] { Slam(config, classes, state); }, {good.sections[i].name, "missing"});

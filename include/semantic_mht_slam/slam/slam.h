@@ -170,6 +170,7 @@ class Slam {
   void localizeBy(const Frame& frame);
   void endSubmap();
   void follow();
+  void restore(const SlamState& state, const KeepReading& keep_reading);
   void localizeNearLastFix();
   bool isKnown(const Eigen::Vector3d& position_m) const;
   bool isKnownSince(std::size_t first_keyframe) const;

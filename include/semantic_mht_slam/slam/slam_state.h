@@ -17,6 +17,7 @@ struct StateSection {
 /// the pose graph.
 struct SlamState {
   std::vector<StateSection> sections;
+  std::string source;  ///< the file that it was read from, for messages; empty: none
 };
 
 }  // namespace semantic_mht_slam
