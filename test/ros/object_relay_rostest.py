@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Boxes of jsk_recognition_msgs and odometry become landmarks, live, with the launch files; bad boxes are told."""
+import copy
+import os
+import sys
+import threading
+import time
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "object_relay"))
+
+import rospy  # noqa: E402
+import rostest  # noqa: E402
+import street  # noqa: E402
+from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
+from nav_msgs.msg import Odometry  # noqa: E402
+from rosgraph_msgs.msg import Log  # noqa: E402
+from std_srvs.srv import Trigger  # noqa: E402
+
+from semantic_mht_slam.msg import SemanticMap, SemanticObjectArray  # noqa: E402
+
+WAIT_S = 30.0
+
+
+class ObjectRelayTest(unittest.TestCase):
+    def setUp(self):
+        self.detector = street.JskDetector()
+        self.heard = {}
+        self.changed = threading.Condition()
+        self.warnings, self.statuses = [], {}
+        self.odometry = rospy.Publisher("/odometry", Odometry, queue_size=1000)
+        self.boxes = rospy.Publisher("/boxes", self.detector.message_class, queue_size=1000)
+        rospy.Subscriber("/objects", SemanticObjectArray, lambda m: self.note("objects", m), queue_size=1000)
+        rospy.Subscriber("/map", SemanticMap, lambda m: self.note("map", m))
+        rospy.Subscriber("/map_as_detections", rospy.AnyMsg, lambda m: self.note("map out", m))
+        rospy.Subscriber("/rosout", Log, lambda m: self.warnings.append(m.msg) if m.level >= Log.WARN else None)
+        rospy.Subscriber("/diagnostics", DiagnosticArray, lambda m: [self.statuses.update({s.name: s}) for s in m.status])
+
+    def note(self, kind, message):
+        with self.changed:
+            self.heard.setdefault(kind, []).append(message)
+            self.changed.notify_all()
+
+    def wait_for(self, condition, what):
+        deadline = time.monotonic() + WAIT_S
+        while not condition():
+            self.assertLess(time.monotonic(), deadline, f"{what}: {self.warnings}")
+            time.sleep(0.05)
+
+    def drive(self):
+        """The first pole is in every message once more, with a class that the table lacks."""
+        for frame in range(street.FRAMES):
+            self.odometry.publish(street.odometry(frame))
+            message = self.detector.detections(frame)
+            message.boxes.append(copy.copy(message.boxes[0]))
+            message.boxes[-1].label = 1234
+            self.boxes.publish(message)
+            with self.changed:  # no faster than it is taken, so that no queue overflows
+                arrived = self.changed.wait_for(lambda n=frame: len(self.heard.get("objects", [])) > n, WAIT_S)
+            self.assertTrue(arrived, f"frame {frame}: {self.warnings}")
+
+    def test_boxes_become_landmarks_and_bad_boxes_are_told(self):
+        rospy.wait_for_service("/finish_submap", WAIT_S)
+        self.wait_for(lambda: self.boxes.get_num_connections() and self.odometry.get_num_connections(), "subscribers")
+        self.wait_for(lambda: any(s.message == "no message on /boxes yet" for s in self.statuses.values()), "diagnostics")
+        self.drive()
+        answer = rospy.ServiceProxy("/finish_submap", Trigger)()
+        self.assertTrue(answer.success, answer.message)
+        self.wait_for(lambda: self.heard.get("map") and self.heard["map"][-1].landmarks, "a map")
+        landmarks = self.heard["map"][-1].landmarks
+        self.assertEqual(street.unmapped([(m.position.x, m.position.y) for m in landmarks]), [])
+        self.assertEqual({m.class_id for m in landmarks}, {street.POLE})
+        self.wait_for(lambda: self.heard.get("map out"), "the map as vision_msgs")
+        self.assertEqual(self.heard["map out"][-1]._connection_header["type"], "vision_msgs/Detection3DArray")
+        problem = "class '1234' is not in the class table"
+        self.wait_for(lambda: any("/boxes: " in text and problem in text for text in self.warnings), "a warning")
+        name = "object_relay: /boxes"
+        self.wait_for(lambda: name in self.statuses and any(
+            problem in item.key and item.value == str(street.FRAMES) for item in self.statuses[name].values), "counts")
+        told = [text for text in self.warnings if problem in text]
+        self.assertLess(len(told), street.FRAMES / 4, "warnings are throttled")
+
+
+if __name__ == "__main__":
+    rospy.init_node("object_relay_rostest")
+    rostest.rosrun("semantic_mht_slam", "object_relay_test", ObjectRelayTest)
