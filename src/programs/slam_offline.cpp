@@ -45,7 +45,8 @@ struct Arguments {
 po::options_description makeOptions(Arguments& arguments) {
   po::options_description options("Options");
   auto add = options.add_options();
-  add("config", po::value(&arguments.config)->value_name("FILE"), "parameters; default: the package's kitti.yaml");
+  add("config", po::value(&arguments.config)->value_name("FILE"),
+      "parameters, a file or the name of one of the package's: kitti.yaml (default), paper.yaml");
   add("dataset", po::value(&arguments.dataset.folder)->value_name("DIR"), "folder with times.txt, calib.txt, ...");
   add("objects", po::value(&arguments.dataset.objects)->value_name("FILE"), "objects CSV; default: objects.csv");
   add("odometry", po::value(&arguments.dataset.odometry)->value_name("FILE"),
@@ -58,6 +59,12 @@ po::options_description makeOptions(Arguments& arguments) {
       "changes a parameter; may be given several times");
   add("output", po::value(&arguments.output)->value_name("DIR"), "folder for the results; made if missing");
   return options;
+}
+
+/// A file of that name, else the package's own one.
+std::string locateConfig(const std::string& name) {
+  return !std::filesystem::exists(name) && std::filesystem::exists(packageConfigFile(name)) ? packageConfigFile(name)
+                                                                                            : name;
 }
 
 SystemConfig loadConfig(const Arguments& arguments) {
@@ -93,6 +100,7 @@ int run(int argc, char** argv) {
     throw InputError("one of --dataset and --bag is needed");
   if (arguments.output.empty()) throw InputError("--output is needed");
 
+  arguments.config = locateConfig(arguments.config);
   SystemConfig config = loadConfig(arguments);
   requireUsableFrames(config.node);
   const std::string config_folder = std::filesystem::path(arguments.config).parent_path().string();

@@ -223,6 +223,8 @@ class SimulatedDetector {
       std::swap(frame.detections[pick], frame.detections[left - 1]);
       std::swap(frame.truth_ids[pick], frame.truth_ids[left - 1]);
     }
+    int row = 0;
+    for (Detection& detection : frame.detections) detection.row = row++;
   }
 
   const std::vector<ScheduledLandmark>& landmarks_;

@@ -121,6 +121,12 @@ TEST(SimulatorTest, AllListsHaveOneEntryAFrameAndBeginAtTheOrigin) {
   }
 }
 
+TEST(SimulatorTest, DetectionsKnowTheirPlaceInTheirFrame) {
+  for (const Detections& frame : simulate(shippedScenario("short"), 3).detections) {
+    for (std::size_t row = 0; row < frame.size(); ++row) EXPECT_EQ(frame[row].row, static_cast<int>(row));
+  }
+}
+
 TEST(SimulatorTest, CameraAxesAreRightDownForward) {
   const Pose T_cam0_base = simulate(shippedScenario("short"), 3).T_cam0_base;
   EXPECT_EQ(T_cam0_base.rotation * Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ());
