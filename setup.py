@@ -3,5 +3,7 @@ from setuptools import setup
 
 from catkin_pkg.python_setup import generate_distutils_setup
 
-setup(**generate_distutils_setup(packages=["semantic_mht_slam", "semantic_mht_slam.object_relay"],
-                                 package_dir={"": "src"}))
+PACKAGES = ["semantic_mht_slam", "semantic_mht_slam.benchmark", "semantic_mht_slam.object_relay"]
+
+setup(**generate_distutils_setup(packages=PACKAGES, package_dir={"": "src"},
+                                 package_data={"semantic_mht_slam.benchmark": ["*.jinja"]}))

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Fills the tables of README.md that stand between "<!-- results: NAME -->" and "<!-- /results -->" from benchmarks.
     scripts/fill_readme.py BENCHMARK [SEMIREAL] [--readme FILE]
-BENCHMARK is the output folder of `evaluate benchmark --objects best,noisy --seeds 1-5` on 00, 05, 06 and 07 (results.csv,
+BENCHMARK is the output folder of `benchmark --objects best,noisy --seeds 1-5` on 00, 05, 06 and 07 (results.csv,
 and results.json for the systems to compare with). SEMIREAL is that of one with `--sequences 00 --odometries vo_orb --objects
 semireal`: the associations of 00 with lidar-like objects, whose cells stay as they are without it. Times stay, too: those of
 a benchmark are of several runs at once. Needs no ROS; the same results give the same README. Ends with code 1, and changes

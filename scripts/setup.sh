@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs what is missing (apt only) and builds the package into build/. Safe to run again: it does only what is left.
-#   scripts/setup.sh [--tests]      --tests builds the tests as well
+#   scripts/setup.sh [--tests | --benchmark]
+# --tests builds the tests as well and installs what they need; --benchmark installs what the program `benchmark` needs.
 set -euo pipefail
 
-# Every package that building, testing and showing needs. The one list.
+# Every package that building and showing needs. The one list, with those that only the benchmark and the tests need below.
 PACKAGES=(
   build-essential cmake git ccache
   ros-core ros-core-dev rosbash librostest-dev python3-rostest
@@ -20,6 +21,8 @@ PACKAGES=(
   rviz librviz-dev qtbase5-dev libgl1-mesa-dri xvfb xauth xdotool imagemagick
   libgtest-dev libbenchmark-dev
 )
+BENCHMARK_PACKAGES=(python3-matplotlib python3-pandas python3-jinja2)
+TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest)
 
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"  # the system's Python has catkin; another one on the PATH may not
@@ -93,10 +96,13 @@ configure_and_build() {
   }
 }
 
+tests=""
+case "${1:-}" in
+  "") ;;
+  --tests) tests=tests; PACKAGES+=("${TEST_PACKAGES[@]}") ;;
+  --benchmark) PACKAGES+=("${BENCHMARK_PACKAGES[@]}") ;;
+  *) fail "unknown option $1 (there are --tests and --benchmark)" ;;
+esac
 install_missing
 echo "setup: building"
-case "${1:-}" in
-  "") configure_and_build "" ;;
-  --tests) configure_and_build tests ;;
-  *) fail "unknown option $1" ;;
-esac
+configure_and_build "$tests"

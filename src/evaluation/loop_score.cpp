@@ -30,8 +30,8 @@ std::size_t checkedFrame(std::int64_t frame, std::size_t frames) {
 
 bool isRight(const std::vector<Pose>& T_world_base, const ClosureEstimate& closure) {
   if (!closure.query_in_match_m.allFinite()) throw std::invalid_argument("a loop closure that is not finite");
-  const Pose& T_world_query = T_world_base[checkedFrame(closure.query_frame, T_world_base.size())];
-  const Pose& T_world_match = T_world_base[checkedFrame(closure.match_frame, T_world_base.size())];
+  const Pose& T_world_query = T_world_base[static_cast<std::size_t>(closure.query_frame)];
+  const Pose& T_world_match = T_world_base[static_cast<std::size_t>(closure.match_frame)];
   const Eigen::Vector3d true_m = (T_world_match.inverse() * T_world_query).translation_m;
   return (true_m - closure.query_in_match_m).norm() < kRightWithin_m;
 }
@@ -101,6 +101,8 @@ ClosureScore closureScore(const std::vector<Pose>& T_world_base, const std::vect
   ClosureScore score;
   std::set<std::int64_t> closed_blocks;
   for (const ClosureEstimate& closure : closures) {
+    for (const std::int64_t frame : {closure.query_frame, closure.match_frame})
+      checkedFrame(frame, T_world_base.size());
     if (!closure.accepted) continue;
     ++score.accepted;
     if (isRight(T_world_base, closure)) {

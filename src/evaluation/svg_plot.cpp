@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "semantic_mht_slam/common/text.h"
-#include "semantic_mht_slam/evaluation/markup.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -85,7 +84,6 @@ Axes axesOf(const Plot& plot) {
       axes.y.include(series.y[i]);
     }
   }
-  for (const auto& [x, name] : plot.x_names) axes.x.include(x);
   if (plot.y_from_zero) axes.y.include(0.0);
   makeUsable(axes.x);
   makeUsable(axes.y);
@@ -122,6 +120,26 @@ std::vector<Tick> ticks(const Range& range) {
   return result;
 }
 
+/// Text as it stands in the content or in an attribute of an element: markup characters become entities, control
+/// characters blanks.
+std::string escapedMarkup(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') {
+      result += "&amp;";
+    } else if (c == '<') {
+      result += "&lt;";
+    } else if (c == '>') {
+      result += "&gt;";
+    } else if (c == '"') {
+      result += "&quot;";
+    } else {
+      result += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
+    }
+  }
+  return result;
+}
+
 std::string text(double x, double y, const std::string& anchor, const std::string& content,
                  const std::string& more = "") {
   return "<text x=\"" + pixels(x) + "\" y=\"" + pixels(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
@@ -133,20 +151,11 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
          "\" " + attributes + "/>\n";
 }
 
-std::vector<Tick> ticksOfX(const Plot& plot, const Axes& axes) {
-  if (plot.x_names.empty()) return ticks(axes.x);
-  std::vector<Tick> result;
-  for (const auto& [x, name] : plot.x_names) result.push_back({x, name});
-  return result;
-}
-
 std::string frame(const Plot& plot, const Axes& axes) {
   const std::string grid = "stroke=\"#dddddd\"";
   std::string svg;
-  for (const Tick& tick : ticksOfX(plot, axes)) {
-    if (plot.x_names.empty()) {
-      svg += line(axes.column(tick.value), kTop_px, axes.column(tick.value), kBottom_px, grid);
-    }
+  for (const Tick& tick : ticks(axes.x)) {
+    svg += line(axes.column(tick.value), kTop_px, axes.column(tick.value), kBottom_px, grid);
     svg += text(axes.column(tick.value), kBottom_px + 18.0, "middle", tick.label);
   }
   for (const Tick& tick : ticks(axes.y)) {
@@ -163,9 +172,6 @@ std::string frame(const Plot& plot, const Axes& axes) {
 }
 
 std::string strokeOf(const PlotSeries& series, const std::string& color) {
-  if (series.style == PlotSeries::Style::kFilled) {
-    return "fill=\"" + escapedMarkup(color) + "\" fill-opacity=\"0.7\" stroke=\"" + escapedMarkup(color) + "\"";
-  }
   const std::string dashes = series.style == PlotSeries::Style::kDashed ? " stroke-dasharray=\"6 4\"" : "";
   return "fill=\"none\" stroke=\"" + escapedMarkup(color) + "\" stroke-width=\"1.5\"" + dashes;
 }
@@ -183,7 +189,6 @@ std::string dots(const PlotSeries& series, const Axes& axes, const std::string& 
 }
 
 std::string curve(const PlotSeries& series, const Axes& axes, const std::string& color) {
-  const std::string end_of_stretch = series.style == PlotSeries::Style::kFilled ? "Z" : "";
   std::string path;
   bool pen_down = false;
   double last_x = 0.0;
@@ -197,7 +202,7 @@ std::string curve(const PlotSeries& series, const Axes& axes, const std::string&
     const double y = axes.row(series.y[i]);
     const bool is_last = i + 1 == series.x.size() || !isDrawn(series, i + 1);
     if (pen_down && !is_last && std::hypot(x - last_x, y - last_y) < kMinStep_px) continue;
-    path += (pen_down ? "L" : "M") + pixels(x) + " " + pixels(y) + (is_last ? end_of_stretch : "");
+    path += (pen_down ? "L" : "M") + pixels(x) + " " + pixels(y);
     pen_down = true;
     last_x = x;
     last_y = y;
@@ -207,11 +212,9 @@ std::string curve(const PlotSeries& series, const Axes& axes, const std::string&
 
 std::string legendEntry(const PlotSeries& series, const std::string& color, double row_px) {
   const double x = kRight_px + 14.0;
-  const std::string sign =
-      series.style == PlotSeries::Style::kDots
-          ? dot(x + 11.0, row_px, color)
-          : line(x, row_px, x + 22.0, row_px,
-                 strokeOf(series, color) + (series.style == PlotSeries::Style::kFilled ? " stroke-width=\"8\"" : ""));
+  const std::string sign = series.style == PlotSeries::Style::kDots
+                               ? dot(x + 11.0, row_px, color)
+                               : line(x, row_px, x + 22.0, row_px, strokeOf(series, color));
   return sign + text(x + 28.0, row_px + 4.0, "start", shortened(series.label));
 }
 

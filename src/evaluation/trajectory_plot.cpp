@@ -4,12 +4,11 @@
 
 namespace semantic_mht_slam {
 
-Plot trajectoryPlot(const std::vector<NamedPath>& paths, GroundPlane plane) {
-  const bool is_camera = plane == GroundPlane::kXRightZForward;
+Plot trajectoryPlot(const std::vector<NamedPath>& paths) {
   Plot plot;
   plot.title = "Trajectory";
   plot.x_label = "x [m]";
-  plot.y_label = is_camera ? "z [m]" : "y [m]";
+  plot.y_label = "z [m]";
   plot.equal_aspect = true;
   for (const NamedPath& path : paths) {
     PlotSeries series;
@@ -18,7 +17,7 @@ Plot trajectoryPlot(const std::vector<NamedPath>& paths, GroundPlane plane) {
     if (path.name == "odometry") series.style = PlotSeries::Style::kDashed;
     for (const Eigen::Vector3d& position_m : path.positions_m) {
       series.x.push_back(position_m.x());
-      series.y.push_back(is_camera ? position_m.z() : position_m.y());
+      series.y.push_back(position_m.z());
     }
     plot.series.push_back(std::move(series));
   }
@@ -34,7 +33,7 @@ Plot errorPlot(const std::string& title, const std::string& y_label, const std::
   for (const NamedErrors& run : runs) {
     PlotSeries series;
     series.label = run.name;
-    for (std::size_t i = 0; i < run.errors_m.size(); ++i) series.x.push_back(static_cast<double>(i));
+    series.x = run.frames;
     series.y = run.errors_m;
     plot.series.push_back(std::move(series));
   }

@@ -10,8 +10,6 @@ int evaluateTrajectory(const std::vector<std::string>& arguments);
 int evaluateAssociation(const std::vector<std::string>& arguments);
 int evaluateLoops(const std::vector<std::string>& arguments);
 int evaluateLandmarks(const std::vector<std::string>& arguments);
-int evaluateHypotheses(const std::vector<std::string>& arguments);
 int evaluateAlignment(const std::vector<std::string>& arguments);
-int evaluateBenchmark(const std::vector<std::string>& arguments);
 
 }  // namespace semantic_mht_slam

@@ -54,7 +54,8 @@ void scoreClosures(const Options& options) {
   const std::vector<ClosureEstimate> closures = readClosures(options.closures_path);
   ClosureScore score;
   withFileName(options.closures_path, [&] { score = closureScore(poses, closures); });
-  const nlohmann::json json = {{"accepted", score.accepted},
+  const nlohmann::json json = {{"checked", closures.size()},
+                               {"accepted", score.accepted},
                                {"wrong", score.wrong},
                                {"precision", score.precision},
                                {"revisited_blocks", score.revisited_blocks},

@@ -48,15 +48,6 @@ std::vector<ClosureEstimate> readClosures(const std::string& path) {
   return closures;
 }
 
-std::vector<CheckedSubmap> readSubmaps(const std::string& path) {
-  const std::vector<std::string> columns = {"first_frame", "checked"};
-  std::vector<CheckedSubmap> submaps;
-  CsvReader(columns, furtherColumns(path, columns)).read(path, [&](const CsvRow& row) {
-    submaps.push_back({row.integer(0), readFlag(row, 1)});
-  });
-  return submaps;
-}
-
 std::vector<TrueDetection> readTrueDetections(const std::string& path) {
   std::vector<TrueDetection> truth;
   CsvReader({"frame", "landmark"}).read(path, [&](const CsvRow& row) {

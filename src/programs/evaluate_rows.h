@@ -13,15 +13,6 @@ namespace semantic_mht_slam {
 /// Throws InputError.
 std::vector<ClosureEstimate> readClosures(const std::string& path);
 
-/// A finished submap, and whether it was searched for loop closures.
-struct CheckedSubmap {
-  std::int64_t first_frame = 0;
-  bool is_checked = false;
-};
-
-/// Submaps of a CSV first_frame,checked and further columns, which are not looked at. Throws InputError.
-std::vector<CheckedSubmap> readSubmaps(const std::string& path);
-
 /// Truth of detections, CSV frame,landmark. Throws InputError.
 std::vector<TrueDetection> readTrueDetections(const std::string& path);
 

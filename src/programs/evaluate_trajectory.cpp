@@ -4,10 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/text.h"
+#include "semantic_mht_slam/evaluation/rigid_alignment.h"
 #include "semantic_mht_slam/evaluation/svg_plot.h"
 #include "semantic_mht_slam/evaluation/trajectory_error.h"
 #include "semantic_mht_slam/evaluation/trajectory_plot.h"
+#include "semantic_mht_slam/io/calibration_file.h"
+#include "semantic_mht_slam/io/dataset.h"
+#include "semantic_mht_slam/io/trajectory_file.h"
 
 #include "evaluate_commands.h"
 #include "evaluate_files.h"
@@ -20,6 +25,9 @@ namespace po = boost::program_options;
 
 constexpr const char* kUsage =
     "Errors of trajectories against the truth, all in KITTI format with a row a frame.\n"
+    "An estimate FILE.tum is in TUM format, of the base frame; its poses are scored whose stamps are in times.txt "
+    "beside\n"
+    "the truth, where calib.txt has to be, too.\n"
     "\n"
     "usage: evaluate trajectory --truth poses.txt --estimate FILE [--estimate FILE ...] [--json] [--output DIR]\n"
     "\n"
@@ -33,11 +41,19 @@ constexpr std::size_t kNameColumns = 40;
 
 struct Run {
   std::string path;
-  std::string label;  ///< tells the runs apart in plots and columns
+  std::string label;                 ///< tells the runs apart in plots and columns
+  std::vector<std::size_t> numbers;  ///< of the frames that it has a pose of, rising; the lists below are as long
+  std::vector<PoseMatrix> truth;
   std::vector<PoseMatrix> poses;
   TrajectoryError error;
   FrameErrors frames;
 };
+
+std::vector<Eigen::Vector3d> positionsOf(const std::vector<PoseMatrix>& poses) {
+  std::vector<Eigen::Vector3d> positions_m;
+  for (const PoseMatrix& pose : poses) positions_m.emplace_back(pose.translation());
+  return positions_m;
+}
 
 std::string lastParts(const std::filesystem::path& path, int parts) {
   std::filesystem::path result = path.stem();
@@ -61,29 +77,56 @@ std::vector<std::string> labels(const std::vector<std::string>& paths) {
   return result;
 }
 
+/// The poses of a TUM file whose stamps times.txt has, as those of camera 0.
+void readTum(const std::string& truth_path, std::size_t frames, Run& run) {
+  const Pose T_cam0_base = readCalibration(calibrationBeside(truth_path));
+  const std::string times_path = (std::filesystem::path(truth_path).parent_path() / "times.txt").string();
+  const std::vector<Stamp> stamps = readTimes(times_path);
+  requireSameLength(truth_path, frames, times_path, stamps.size());
+  std::vector<Pose> poses;
+  for (const auto& [stamp, T_map_base] : readTumTrajectory(run.path)) {
+    const auto found = std::lower_bound(stamps.begin(), stamps.end(), stamp);
+    if (found == stamps.end() || *found != stamp) continue;
+    run.numbers.push_back(static_cast<std::size_t>(found - stamps.begin()));
+    poses.push_back(toCamera(T_map_base, T_cam0_base));
+  }
+  if (poses.empty()) throw InputError(run.path + ": none of its stamps is in " + times_path);
+  run.poses = poseMatrices(poses);
+}
+
+void readKitti(const std::string& truth_path, std::size_t frames, Run& run) {
+  run.poses = readPoseMatrices(run.path);
+  requireSameLength(truth_path, frames, run.path, run.poses.size());
+  for (std::size_t i = 0; i < frames; ++i) run.numbers.push_back(i);
+}
+
 std::vector<Run> evaluateRuns(const std::string& truth_path, const std::vector<PoseMatrix>& truth,
                               const std::vector<std::string>& paths) {
   const std::vector<std::string> names = labels(paths);
   std::vector<Run> runs;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    Run run{paths[i], names[i], readPoseMatrices(paths[i]), {}, {}};
-    requireSameLength(truth_path, truth.size(), run.path, run.poses.size());
-    run.error = trajectoryError(truth, run.poses);
-    run.frames = frameErrors(truth, run.poses);
+    Run run;
+    run.path = paths[i];
+    run.label = names[i];
+    const bool is_tum = std::filesystem::path(run.path).extension() == ".tum";
+    (is_tum ? readTum : readKitti)(truth_path, truth.size(), run);
+    for (const std::size_t number : run.numbers) run.truth.push_back(truth[number]);
+    run.error = trajectoryError(run.truth, run.poses);
+    run.frames = frameErrors(run.truth, run.poses);
     runs.push_back(std::move(run));
   }
   return runs;
 }
 
-nlohmann::json toJson(const TrajectoryError& error) {
-  nlohmann::json json;
-  for (const auto& [name, value] : namedFigures(error)) json[name] = value;
+nlohmann::json toJson(const Run& run) {
+  nlohmann::json json = {{"frames", run.numbers.size()}, {"length_m", pathLength(run.truth)}};
+  for (const auto& [name, value] : namedFigures(run.error)) json[name] = value;
   return json;
 }
 
 nlohmann::json toJson(const std::vector<Run>& runs) {
   nlohmann::json json = nlohmann::json::object();
-  for (const Run& run : runs) json[run.path] = toJson(run.error);
+  for (const Run& run : runs) json[run.path] = toJson(run);
   return json;
 }
 
@@ -106,42 +149,49 @@ std::string table(const std::vector<Run>& runs) {
   return text;
 }
 
+/// The cells of a run, a text a frame; empty cells where it has no pose.
+std::vector<std::string> errorCells(const Run& run, std::size_t frames) {
+  const Pose T_truth_estimate = rigidAlignment(positionsOf(run.poses), positionsOf(run.truth));
+  std::vector<std::string> cells(frames, ",,,,,,");
+  for (std::size_t i = 0; i < run.numbers.size(); ++i) {
+    const Eigen::Vector3d aligned_m = T_truth_estimate * Eigen::Vector3d(run.poses[i].translation());
+    std::string& text = cells[run.numbers[i]];
+    text.clear();
+    for (const double value : {run.frames.unaligned_m[i], run.frames.aligned_m[i], run.frames.running_rmse_m[i],
+                               aligned_m.x(), aligned_m.y(), aligned_m.z()}) {
+      text += "," + formatFixed(value, 6);
+    }
+  }
+  return cells;
+}
+
 std::string errorsCsv(const std::vector<Run>& runs, std::size_t frames) {
-  std::string text = "frame";
+  std::string header = "frame";
+  std::vector<std::string> rows(frames);
+  for (std::size_t i = 0; i < frames; ++i) rows[i] = std::to_string(i);
   for (const Run& run : runs) {
     std::string label = run.label;
     std::replace(label.begin(), label.end(), ',', '_');
-    for (const char* column : {"_unaligned_m", "_aligned_m", "_running_rmse_m"})
-      text.append(",").append(label).append(column);
-  }
-  text += "\n";
-  for (std::size_t i = 0; i < frames; ++i) {
-    text += std::to_string(i);
-    for (const Run& run : runs) {
-      text += "," + formatFixed(run.frames.unaligned_m[i], 6) + "," + formatFixed(run.frames.aligned_m[i], 6) + "," +
-              formatFixed(run.frames.running_rmse_m[i], 6);
+    for (const char* column :
+         {"_unaligned_m", "_aligned_m", "_running_rmse_m", "_aligned_x_m", "_aligned_y_m", "_aligned_z_m"}) {
+      header.append(",").append(label).append(column);
     }
-    text += "\n";
+    const std::vector<std::string> cells = errorCells(run, frames);
+    for (std::size_t i = 0; i < frames; ++i) rows[i] += cells[i];
   }
-  return text;
-}
-
-NamedPath namedPath(const std::string& name, const std::vector<PoseMatrix>& poses) {
-  NamedPath path{name, {}};
-  for (const PoseMatrix& pose : poses) path.positions_m.emplace_back(pose.translation());
-  return path;
+  return header + "\n" + joined(rows, "\n") + "\n";
 }
 
 OutputFiles files(const std::vector<PoseMatrix>& truth, const std::vector<Run>& runs) {
-  std::vector<NamedPath> paths = {namedPath("truth", truth)};
+  std::vector<NamedPath> paths = {{"truth", positionsOf(truth)}};
   std::vector<NamedErrors> errors;
   for (const Run& run : runs) {
-    paths.push_back(namedPath(run.label, startingAt(truth.front(), run.poses)));
-    errors.push_back({run.label, run.frames.running_rmse_m});
+    paths.push_back({run.label, positionsOf(startingAt(run.truth.front(), run.poses))});
+    errors.push_back({run.label, {run.numbers.begin(), run.numbers.end()}, run.frames.running_rmse_m});
   }
   return {{"trajectory.json", jsonText(toJson(runs))},
           {"trajectory_errors.csv", errorsCsv(runs, truth.size())},
-          {"trajectory.svg", svgPlot(trajectoryPlot(paths, GroundPlane::kXRightZForward))},
+          {"trajectory.svg", svgPlot(trajectoryPlot(paths))},
           {"running_rmse.svg", svgPlot(errorPlot("Error up to the frame, unaligned", "RMSE [m]", errors))}};
 }
 

@@ -29,6 +29,7 @@ constexpr const char* kUsage =
     "Runs the system on a data-set folder or a bag, as fast as it goes.\n"
     "  slam_offline --dataset DIR [--objects FILE] [--odometry FILE] --output DIR\n"
     "  slam_offline --bag FILE --output DIR\n"
+    "  slam_offline --print-config [--config FILE] [--set KEY=VALUE ...]\n"
     "With --load MAP it goes on with the map of an earlier run (DIR/map.bag).\n";
 
 struct Arguments {
@@ -40,6 +41,7 @@ struct Arguments {
   std::vector<std::string> settings;
   std::string method;
   std::string seed;
+  bool only_config = false;
 };
 
 po::options_description makeOptions(Arguments& arguments) {
@@ -57,6 +59,8 @@ po::options_description makeOptions(Arguments& arguments) {
   add("seed", po::value(&arguments.seed)->value_name("N"), "the same as --set seed=N");
   add("set", po::value(&arguments.settings)->value_name("KEY=VALUE")->composing(),
       "changes a parameter; may be given several times");
+  add("print-config", po::bool_switch(&arguments.only_config),
+      "prints the parameters as they are in force, runs nothing");
   add("output", po::value(&arguments.output)->value_name("DIR"), "folder for the results; made if missing");
   return options;
 }
@@ -65,6 +69,12 @@ po::options_description makeOptions(Arguments& arguments) {
 std::string locateConfig(const std::string& name) {
   return !std::filesystem::exists(name) && std::filesystem::exists(packageConfigFile(name)) ? packageConfigFile(name)
                                                                                             : name;
+}
+
+void requireInputAndOutput(const Arguments& arguments) {
+  if (arguments.bag.empty() == arguments.dataset.folder.empty())
+    throw InputError("one of --dataset and --bag is needed");
+  if (arguments.output.empty()) throw InputError("--output is needed");
 }
 
 SystemConfig loadConfig(const Arguments& arguments) {
@@ -96,9 +106,7 @@ void printSummary(const RunResult& result, const std::optional<TrajectoryError>&
 int run(int argc, char** argv) {
   Arguments arguments;
   if (!parseOrHelp({argv + 1, argv + argc}, kUsage, makeOptions(arguments))) return 0;
-  if (arguments.bag.empty() == arguments.dataset.folder.empty())
-    throw InputError("one of --dataset and --bag is needed");
-  if (arguments.output.empty()) throw InputError("--output is needed");
+  if (!arguments.only_config) requireInputAndOutput(arguments);
 
   arguments.config = locateConfig(arguments.config);
   SystemConfig config = loadConfig(arguments);
@@ -108,6 +116,10 @@ int run(int argc, char** argv) {
   config.slam.back_end.evaluator.tree = locateEvaluatorTree(config, config_folder);
   const ClassTable classes = loadClassTable(config, config_folder);
   const SlamConfig slam_config = loadableSlamConfig(config, config_folder);
+  if (arguments.only_config) {
+    std::fputs(toYaml(config).c_str(), stdout);
+    return 0;
+  }
   const Recording recording = loadRecording(arguments, classes, config);
   std::optional<LoadedMap> map;
   if (!arguments.map.empty()) map = readMapFile(arguments.map, config, classes, [] { return true; });

@@ -124,20 +124,18 @@ TEST(SvgPlotTest, RefusesMoreOfOneCoordinate) {
   EXPECT_THROW(svgPlot(plot), std::invalid_argument);
 }
 
-TEST(TrajectoryPlotTest, DrawsTheGroundPlaneOfTheFrame) {
+TEST(TrajectoryPlotTest, DrawsTheGroundPlaneOfTheCamera) {
   const std::vector<NamedPath> paths = {{"truth", {{1.0, 2.0, 3.0}}}, {"odometry", {{4.0, 5.0, 6.0}}}};
-  const Plot camera = trajectoryPlot(paths, GroundPlane::kXRightZForward);
-  const Plot base = trajectoryPlot(paths, GroundPlane::kXForwardYLeft);
-  EXPECT_EQ(camera.series[0].y[0], 3.0);
-  EXPECT_EQ(base.series[0].y[0], 2.0);
-  EXPECT_EQ(base.series[1].x[0], 4.0);
-  EXPECT_EQ(base.series[1].style, PlotSeries::Style::kDashed);
-  EXPECT_TRUE(base.equal_aspect);
+  const Plot plot = trajectoryPlot(paths);
+  EXPECT_EQ(plot.series[0].y[0], 3.0);
+  EXPECT_EQ(plot.series[1].x[0], 4.0);
+  EXPECT_EQ(plot.series[1].style, PlotSeries::Style::kDashed);
+  EXPECT_TRUE(plot.equal_aspect);
 }
 
 TEST(TrajectoryPlotTest, ErrorsGoOverFramesFromZero) {
-  const Plot plot = errorPlot("title", "RMSE [m]", {{"run", {5.0, 6.0, 7.0}}});
-  EXPECT_EQ(plot.series[0].x, (std::vector<double>{0.0, 1.0, 2.0}));
+  const Plot plot = errorPlot("title", "RMSE [m]", {{"run", {0.0, 1.0, 3.0}, {5.0, 6.0, 7.0}}});
+  EXPECT_EQ(plot.series[0].x, (std::vector<double>{0.0, 1.0, 3.0}));
   EXPECT_TRUE(plot.y_from_zero);
   EXPECT_EQ(plot.y_label, "RMSE [m]");
 }

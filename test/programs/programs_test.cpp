@@ -68,6 +68,15 @@ TEST_F(ProgramsTest, OfflineRunWritesEveryFileAndTwoRunsWriteTheSameBytes) {
   EXPECT_NE(readFile(output_ + "/report.json").find("\"se3_m\""), std::string::npos);
 }
 
+TEST_F(ProgramsTest, TheConfigurationInForceIsPrintedWithoutARunAndIsThatOfTheRun) {
+  const std::string settings = " --set max_hypotheses=7 --seed 3";
+  const ProgramResult printed = runProgramOfPackage("slam_offline", "--print-config" + settings);
+  EXPECT_EQ(printed.exit_code, 0) << printed.output;
+  EXPECT_FALSE(fs::exists(output_));
+  ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments() + settings).exit_code, 0);
+  EXPECT_EQ(printed.output, readFile(output_ + "/config.yaml"));
+}
+
 TEST_F(ProgramsTest, LandmarksThatHardlyAFrameShowsAreNotMissed) {
   ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments()).exit_code, 0);
   const auto figureWith = [&](const std::string& name, const std::string& options) {

@@ -1,19 +1,13 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace semantic_mht_slam {
 
 /// One set of points of a plot. Points that are not finite are left out and interrupt the line.
 struct PlotSeries {
-  enum class Style {
-    kLine,
-    kDashed,
-    kDots,
-    kFilled  ///< closed shapes, one from each uninterrupted stretch of points
-  };
+  enum class Style { kLine, kDashed, kDots };
 
   std::string label;  ///< for the legend; empty: not in the legend
   std::vector<double> x;
@@ -27,9 +21,8 @@ struct Plot {
   std::string title;
   std::string x_label;  ///< with unit, as "x [m]"
   std::string y_label;
-  bool equal_aspect = false;                            ///< a unit is as long on one axis as on the other
-  bool y_from_zero = false;                             ///< the y axis includes 0
-  std::vector<std::pair<double, std::string>> x_names;  ///< what stands at the x axis in place of numbers
+  bool equal_aspect = false;  ///< a unit is as long on one axis as on the other
+  bool y_from_zero = false;   ///< the y axis includes 0
   std::vector<PlotSeries> series;
 };
 

@@ -15,18 +15,14 @@ struct NamedPath {
   std::vector<Eigen::Vector3d> positions_m;
 };
 
-/// The axes of the ground plane of a frame.
-enum class GroundPlane {
-  kXForwardYLeft,  ///< base frames: x over y
-  kXRightZForward  ///< camera frames: x over z
-};
+/// Paths of a camera seen from above, x right and z forward. The one named "truth" is drawn dark, one named "odometry"
+/// dashed.
+Plot trajectoryPlot(const std::vector<NamedPath>& paths);
 
-/// Paths seen from above. The one named "truth" is drawn dark, one named "odometry" dashed.
-Plot trajectoryPlot(const std::vector<NamedPath>& paths, GroundPlane plane);
-
-/// Numbers of one run, one a frame, with its name in the legend.
+/// Numbers of one run, one a frame that it knows, with its name in the legend.
 struct NamedErrors {
   std::string name;
+  std::vector<double> frames;
   std::vector<double> errors_m;
 };
 
