@@ -12,7 +12,7 @@ from semantic_mht_slam.benchmark.processes import Interrupted, Processes
 from conftest import program_folder
 
 
-def wait_for(condition, limit_s=30.0):
+def wait_for(condition, limit_s=120.0):
     end_s = time.monotonic() + limit_s
     while not condition():
         assert time.monotonic() < end_s, "waited in vain"
@@ -28,12 +28,13 @@ def is_alive(process_id: int) -> bool:
 
 def test_no_more_than_the_wanted_number_runs_at_once_and_every_result_comes():
     lock, running, most = threading.Lock(), [0], [0]
+    three = threading.Barrier(3, timeout=120.0)
 
     def work(item):
         with lock:
             running[0] += 1
             most[0] = max(most[0], running[0])
-        time.sleep(0.02)
+        three.wait()
         with lock:
             running[0] -= 1
         return 10 * item
@@ -51,12 +52,12 @@ def test_an_exception_ends_what_runs_and_cancels_what_waits():
         if item == 0:
             wait_for(lambda: len(started) > 1)
             raise ValueError("broken")
-        return processes.run(["sleep", "60"]).returncode
+        return processes.run(["sleep", "600"]).returncode
 
     begin_s = time.monotonic()
     with pytest.raises(ValueError):
         list(processes.each(work, list(range(50)), 2))
-    assert time.monotonic() - begin_s < 30.0
+    assert time.monotonic() - begin_s < 300.0
     assert len(started) < 10
     with pytest.raises(Interrupted):
         processes.run(["true"])
@@ -72,16 +73,19 @@ def test_an_interrupted_benchmark_leaves_no_run_behind_and_goes_on_later(small, 
     slow.write_text(f"""#!/bin/sh
 case "$*" in *--print-config*) exec '{program_folder()}/slam_offline' "$@" ;; esac
 echo $$ > '{tmp_path}'/$$.id
-exec sleep 60
+exec sleep 600
 """)
     slow.chmod(0o755)
     output = tmp_path / "report"
     process = subprocess.Popen(
         [sys.executable, str(fake / "benchmark"), "--data", str(small.data), "--output", str(output), "--odometries",
          "odometry", "--methods", "ukf", "--seeds", "1-9", "--jobs", "2"], stderr=subprocess.PIPE, encoding="utf-8")
-    wait_for(lambda: len([path for path in tmp_path.glob("*.id") if path.read_text()]) == 2)
-    os.kill(process.pid, how)
-    _, errors = process.communicate(timeout=30)
+    try:
+        wait_for(lambda: len([path for path in tmp_path.glob("*.id") if path.read_text()]) == 2)
+        os.kill(process.pid, how)
+        _, errors = process.communicate(timeout=120)
+    finally:
+        process.kill()
     assert process.returncode == 130
     assert "interrupted" in errors
     ids = [int(path.read_text()) for path in tmp_path.glob("*.id")]
