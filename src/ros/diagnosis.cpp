@@ -61,16 +61,16 @@ void addTopic(const TopicStatus& topic, DiagnosticStatusWrapper& status) {
 /// "class ids 7, 99", or empty.
 std::string unknownClasses(const EstimatorStatus& now, const EstimatorStatus& before) {
   std::vector<std::string> ids;
-  for (const auto& [id, count] : now.unknown_classes) {
-    const auto known = before.unknown_classes.find(id);
-    if (known == before.unknown_classes.end() || known->second < count) ids.push_back(std::to_string(id));
+  for (const auto& [id, count] : now.refused.unknown_classes) {
+    const auto known = before.refused.unknown_classes.find(id);
+    if (known == before.refused.unknown_classes.end() || known->second < count) ids.push_back(std::to_string(id));
   }
   if (ids.empty()) return {};
   return (ids.size() == 1 ? "class id " : "class ids ") + joined(ids);
 }
 
 void addUnknownClasses(const EstimatorStatus& estimator, DiagnosticStatusWrapper& status) {
-  for (const auto& [id, count] : estimator.unknown_classes) {
+  for (const auto& [id, count] : estimator.refused.unknown_classes) {
     status.add("objects of unknown class id " + std::to_string(id), count);
   }
 }
@@ -112,13 +112,19 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   finding.error(odometry.silent_s.value_or(0.0) > kOdometrySilence_s,
                 "no odometry on " + odometry.topic + " for " + seconds(odometry.silent_s.value_or(0.0)),
                 "look at the odometry's node, or at the player if this is a bag");
-  finding.error(now.estimator.odometry_wrong_frames > before.estimator.odometry_wrong_frames,
-                odometry.topic + " goes from " + now.estimator.wrong_frames + ", expected is " + expected,
+  finding.error(now.estimator.refused.odometry_wrong_frames > before.estimator.refused.odometry_wrong_frames,
+                odometry.topic + " goes from " + now.estimator.refused.wrong_frames + ", expected is " + expected,
                 "set node/odom_frame to its header.frame_id and node/base_frame to its child_frame_id");
   finding.error(
       counters.odometry_invalid > before.estimator.counters.odometry_invalid,
       odometry.topic + " holds poses that are not finite, or beyond 1e10 m, or whose quaternion has no unit norm",
       "mend the odometry's orientation: w = 1 for none, never all zero");
+  finding.error(now.estimator.refused.odometry_bad_stamps > before.estimator.refused.odometry_bad_stamps,
+                odometry.topic + " is stamped zero, or beyond the end of ROS's time (2106): dropped",
+                "set header.stamp to the time of the measurement");
+  finding.warn(now.estimator.refused.odometry_stamp_outliers > before.estimator.refused.odometry_stamp_outliers,
+               odometry.topic + " holds single stamps far from the others: dropped",
+               "look at the clock of the odometry's machine, and whether a second node publishes on the topic");
   finding.warn(counters.odometry_not_rising > before.estimator.counters.odometry_not_rising,
                odometry.topic + " holds stamps that do not rise",
                "let one node alone publish it, with a new header.stamp in every message");
@@ -127,7 +133,9 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   addTopic(odometry, status);
   status.add("expected frames", expected);
   status.add("used", counters.odometry);
-  status.add("dropped, wrong frames", now.estimator.odometry_wrong_frames);
+  status.add("dropped, wrong frames", now.estimator.refused.odometry_wrong_frames);
+  status.add("dropped, bad stamp", now.estimator.refused.odometry_bad_stamps);
+  status.add("dropped, stamp far from the others", now.estimator.refused.odometry_stamp_outliers);
   status.add("dropped, invalid", counters.odometry_invalid);
   status.add("dropped, stamp does not rise", counters.odometry_not_rising);
 }
@@ -144,10 +152,13 @@ void findObjectsFault(const NodeStatus& now, const NodeStatus& before, Finding& 
                objects.publishers == 0
                    ? "nobody publishes them: start the detector, or remap objects:=/its/topic"
                    : "the detector sends nothing: it should send an empty array if it sees nothing");
-  finding.error(estimator.objects_without_transform > before.estimator.objects_without_transform,
-                "no transform from '" + estimator.unconnected_frame + "' to '" + now.base_frame + "'",
+  finding.error(estimator.refused.objects_bad_stamps > before.estimator.refused.objects_bad_stamps,
+                objects.topic + " is stamped zero, or beyond the end of ROS's time (2106): dropped",
+                "set header.stamp to the time of the scan or image");
+  finding.error(estimator.refused.objects_without_transform > before.estimator.refused.objects_without_transform,
+                "no transform from '" + estimator.refused.unconnected_frame + "' to '" + now.base_frame + "'",
                 "publish where the sensor is: rosrun tf2_ros static_transform_publisher X Y Z YAW PITCH ROLL " +
-                    now.base_frame + " " + estimator.unconnected_frame);
+                    now.base_frame + " " + estimator.refused.unconnected_frame);
   finding.error(
       counters.frames_far_ahead > old.frames_far_ahead || counters.frames_before_odometry > old.frames_before_odometry,
       objects.topic + " is stamped " + apart(objects) + " the odometry: dropped",
@@ -181,7 +192,8 @@ void diagnoseObjects(const NodeStatus& now, const NodeStatus& before, Diagnostic
   addTopic(now.objects, status);
   status.add("frames used", counters.frames);
   status.add("objects used", counters.detections);
-  status.add("dropped, no transform", now.estimator.objects_without_transform);
+  status.add("dropped, bad stamp", now.estimator.refused.objects_bad_stamps);
+  status.add("dropped, no transform", now.estimator.refused.objects_without_transform);
   status.add("dropped, before the odometry", counters.frames_before_odometry);
   status.add("dropped, far ahead of the odometry", counters.frames_far_ahead);
   status.add("dropped, stamp does not rise", counters.frames_not_rising);
@@ -202,11 +214,30 @@ void diagnoseQueue(const NodeStatus& now, const NodeStatus& before, DiagnosticSt
   status.add("dropped", now.queue_dropped);
 }
 
-void diagnoseEstimator(const NodeStatus& now, const NodeStatus&, DiagnosticStatusWrapper& status) {
+namespace {
+
+void findEstimatorFault(const NodeStatus& now, const NodeStatus& before, Finding& finding) {
+  const FailureStatus& input = now.input_failures;
+  const FailureStatus& others = now.other_failures;
+  const std::string report = "keep a bag of the input and report it (docs/troubleshooting.md)";
+  finding.error(input.isLasting(), "the estimator failed three times in a row and stands still: " + input.newest,
+                "the pose goes on by odometry alone; call reset or load_map, and " + report);
+  finding.error(input.count > before.input_failures.count, "an unexpected failure dropped a message: " + input.newest,
+                report + "; reset begins anew if it goes on");
+  finding.error(others.count > before.other_failures.count, "unexpected failure of " + others.newest, report);
+  finding.warn(now.estimator.initial_poses_refused > before.estimator.initial_poses_refused,
+               "initialpose is refused: " + now.estimator.initial_pose_problem,
+               "set localization by set_mode first, and give a finite pose and covariance in the map frame");
+}
+
+}  // namespace
+
+void diagnoseEstimator(const NodeStatus& now, const NodeStatus& before, DiagnosticStatusWrapper& status) {
   const EstimatorStatus& estimator = now.estimator;
-  Finding(status).otherwise(std::to_string(estimator.hypotheses) + " hypotheses, " +
-                            std::to_string(estimator.landmarks) + " landmarks, " +
-                            formatFixed(now.frame_times.mean_ms, 1) + " ms a frame");
+  Finding finding(status);
+  findEstimatorFault(now, before, finding);
+  finding.otherwise(std::to_string(estimator.hypotheses) + " hypotheses, " + std::to_string(estimator.landmarks) +
+                    " landmarks, " + formatFixed(now.frame_times.mean_ms, 1) + " ms a frame");
   status.add("method", estimator.method);
   status.add("mode", estimator.mode);
   status.add("hypotheses", estimator.hypotheses);
@@ -214,6 +245,10 @@ void diagnoseEstimator(const NodeStatus& now, const NodeStatus&, DiagnosticStatu
   status.add("submaps", estimator.submaps);
   status.add("loops", estimator.loops);
   status.add("maps begun", estimator.resets + 1);
+  status.add("initial poses refused", estimator.initial_poses_refused);
+  status.add("unexpected failures of the input", now.input_failures.count);
+  status.add("unexpected failures of services and timers", now.other_failures.count);
+  status.add("objects dropped while it stands still", estimator.objects_while_failing);
   status.add("frame time, mean (ms)", formatFixed(now.frame_times.mean_ms, 3));
   status.add("frame time, p99 (ms)", formatFixed(now.frame_times.p99_ms, 3));
   status.add("frame time, max (ms)", formatFixed(now.frame_times.max_ms, 3));

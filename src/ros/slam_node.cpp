@@ -27,7 +27,7 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       sensors_(config.node.base_frame),
       slam_(std::make_unique<Slam>(config.slam, classes)),
       publisher_(handle, config.node, classes),
-      jump_(stampFromSeconds(config.node.reset_after_jump_back_s)),
+      gate_(config.node),
       queue_(static_cast<std::size_t>(config.node.queue_size)) {
   estimator_.method = nameOf(config.slam.method);
   noteStatus();
@@ -35,8 +35,10 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
   advertiseServices();
   ros::NodeHandle slow_handle(handle_);
   slow_handle.setCallbackQueue(&slow_queue_);
-  slow_timer_ = slow_handle.createWallTimer(ros::WallDuration(config_.node.trajectory_period_s),
-                                            &SlamNode::publishSlowTopics, this);
+  slow_timer_ = slow_handle.createWallTimer(
+      ros::WallDuration(config_.node.trajectory_period_s), [this](const ros::WallTimerEvent&) {
+        other_failures_.run("publishing the trajectory", [this] { publishSlowTopics(); });
+      });
   diagnostics_ = std::make_unique<NodeDiagnostics>(handle_, private_handle, [this] { return status(); });
   worker_ = std::thread([this] { work(); });
   slow_spinner_.start();
@@ -60,8 +62,9 @@ void SlamNode::subscribe() {
       "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); },
       ros::VoidConstPtr(), at_once);
   initial_pose_subscriber_ = handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
-      "initialpose", 1,
-      [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) { expectAt(*message); });
+      "initialpose", 1, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) {
+        other_failures_.run("initialpose", [&] { expectAt(*message); });
+      });
   objects_subscriber_ = handle_.subscribe<SemanticObjectArray>(
       "objects", kSubscriberQueue, [this](const SemanticObjectArrayConstPtr& message) { receive(message); },
       ros::VoidConstPtr(), at_once);
@@ -86,40 +89,72 @@ void SlamNode::receive(const SemanticObjectArrayConstPtr& message) {
 }
 
 void SlamNode::work() {
-  using Clock = std::chrono::steady_clock;
   while (const std::optional<InputMessage> message = queue_.pop()) {
     const std::lock_guard<TicketMutex> lock(slam_mutex_);
-    const std::size_t frames = slam_->counters().frames;
-    const Clock::time_point begin = Clock::now();
-    std::visit([this](const auto& pointer) { handle(*pointer); }, *message);
-    const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-    noteStatus();
-    if (slam_->counters().frames > frames) {
-      const std::lock_guard<std::mutex> status_lock(status_mutex_);
-      frame_timer_.add(time_ms);
-    }
-    for (const std::string& line : droppedInput(estimator_, queue_.dropped(), odometry_subscriber_.getTopic(),
-                                                objects_subscriber_.getTopic(), config_.node.base_frame)) {
-      warnings_.warn(line);
-    }
+    handleSafely(*message);
+    other_failures_.run("looking at the estimator", [this] {
+      noteStatus();
+      warnOfDrops();
+    });
+  }
+}
+
+void SlamNode::handleSafely(const InputMessage& message) {
+  const auto* odometry = std::get_if<nav_msgs::OdometryConstPtr>(&message);
+  if (input_failures_.status().isLasting()) {
+    if (odometry == nullptr) ++estimator_.objects_while_failing;
+  } else if (input_failures_.run(odometry != nullptr ? "odometry" : "objects", [&] { handleTimed(message); })) {
+    return;
+  }
+  if (odometry != nullptr) other_failures_.run("dead reckoning", [&] { deadReckon(**odometry); });
+}
+
+void SlamNode::handleTimed(const InputMessage& message) {
+  using Clock = std::chrono::steady_clock;
+  const std::size_t frames = slam_->counters().frames;
+  const Clock::time_point begin = Clock::now();
+  std::visit([this](const auto& pointer) { handle(*pointer); }, message);
+  const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+  if (slam_->counters().frames == frames) return;
+  const std::lock_guard<std::mutex> status_lock(status_mutex_);
+  frame_timer_.add(time_ms);
+}
+
+void SlamNode::deadReckon(const nav_msgs::Odometry& message) {
+  const Pose T_odom_base = fromMessage(message.pose.pose);
+  if (!gate_.isUsable(message, estimator_.refused) || !T_odom_base.isValid()) return;
+  publisher_.publishDeadReckoning({toStamp(message.header.stamp), T_odom_base}, live_.get());
+}
+
+void SlamNode::warnOfDrops() {
+  const std::size_t from_queue = queue_.dropped();
+  if (from_queue > 0) {
+    warnings_.warn(std::to_string(from_queue) + " messages dropped, the estimator is too slow (node/queue_size)");
+  }
+  const InputNames names{odometry_subscriber_.getTopic(), objects_subscriber_.getTopic()};
+  for (const std::string& line :
+       droppedInput(estimator_.counters, estimator_.refused, names, config_.node.base_frame)) {
+    warnings_.warn(line);
+  }
+  for (const FailureStatus& failures : {input_failures_.status(), other_failures_.status()}) {
+    if (failures.count > 0)
+      warnings_.warn("unexpected failures: " + std::to_string(failures.count) + "; the newest: " + failures.newest);
   }
 }
 
 void SlamNode::handle(const nav_msgs::Odometry& message) {
-  if (!isExpectedFrame(message)) return;
-  const Stamp stamp = toStamp(message.header.stamp);
+  if (!gate_.isUsable(message, estimator_.refused)) return;
   if (std::exchange(is_loaded_, false)) beginSessionUnlessGoingOn(message);
-  if (jump_.isUnconfirmed(stamp, latestStamp())) return jump_.hold(message);
-  if (const auto jumped = jump_.takeConfirmed(stamp, latestStamp())) {
-    if (toStamp(jumped->header.stamp) < *latestStamp()) {
-      const bool keeps_map = slam_->isLocalizing();
-      ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latestStamp()), secondsFromStamp(stamp),
-               keeps_map ? "looking for the place in the map" : "starting a new map");
-      keeps_map ? slam_->beginSession() : startAgain();
-    }
-    process(*jumped);
+  const std::optional<Stamp> latest = latestStamp();
+  const std::vector<nav_msgs::Odometry> usable = gate_.pass(message, latest, estimator_.refused);
+  if (usable.empty()) return;  // until the next message tells whether time jumped
+  if (usable.size() > 1 && toStamp(usable.front().header.stamp) < *latest) {
+    const bool keeps_map = slam_->isLocalizing();
+    ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latest), message.header.stamp.toSec(),
+             keeps_map ? "looking for the place in the map" : "starting a new map");
+    keeps_map ? slam_->beginSession() : startAgain();
   }
-  process(message);
+  for (const nav_msgs::Odometry& sample : usable) process(sample);
   retryObjects();
 }
 
@@ -143,35 +178,26 @@ std::optional<Stamp> SlamNode::latestStamp() const {
   return latest ? std::optional(latest->stamp) : std::nullopt;
 }
 
-bool SlamNode::isExpectedFrame(const nav_msgs::Odometry& message) {
-  const NodeConfig& node = config_.node;
-  if (withoutSlash(message.header.frame_id) == node.odom_frame &&
-      withoutSlash(message.child_frame_id) == node.base_frame) {
-    return true;
-  }
-  ++estimator_.odometry_wrong_frames;
-  estimator_.wrong_frames = "'" + message.header.frame_id + "' to '" + message.child_frame_id + "'";
-  warnings_.warn(odometry_subscriber_.getTopic() + ": odometry from " + estimator_.wrong_frames +
-                 " is ignored, expected is '" + node.odom_frame + "' to '" + node.base_frame +
-                 "': set node/odom_frame and node/base_frame");
-  return false;
-}
-
 void SlamNode::startAgain() {
   slam_ = std::make_unique<Slam>(config_.slam, classes_);
   publisher_.startAgain(*slam_);
   published_odometry_ = 0;
   is_localization_wanted_ = false;
+  input_failures_.forgetRow();
   ++estimator_.resets;
 }
 
 void SlamNode::handle(const SemanticObjectArray& message) {
+  if (!isUsableStamp(message.header.stamp)) {
+    ++estimator_.refused.objects_bad_stamps;
+    return;
+  }
   const Stamp stamp = toStamp(message.header.stamp);
-  const bool falls_back = jump_.isBack(stamp, last_objects_);
+  const bool falls_back = gate_.isBack(stamp, last_objects_);
   last_objects_ = stamp;
   waiting_objects_.push_back(
       {message, falls_back, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});
-  if (!jump_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
+  if (!gate_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
 }
 
 void SlamNode::retryObjects() {
@@ -179,24 +205,25 @@ void SlamNode::retryObjects() {
   // the odometry that tells of it. Nothing waits for them. A detector that is merely late does not wait: its stamps
   // rise.
   while (!waiting_objects_.empty()) {
-    const auto& [message, falls_back, deadline] = waiting_objects_.front();
-    const std::optional<Pose> T_base_sensor = sensors_.find(message.header.frame_id);
-    const bool may_wait = ros::WallTime::now() < deadline;
-    const bool overtook_jump = falls_back && jump_.isBack(toStamp(message.header.stamp), latestStamp());
+    const WaitingObjects& next = waiting_objects_.front();
+    const std::optional<Pose> T_base_sensor = sensors_.find(next.message.header.frame_id);
+    const bool may_wait = ros::WallTime::now() < next.deadline;
+    const bool overtook_jump = next.falls_back && gate_.isBack(toStamp(next.message.header.stamp), latestStamp());
     if (may_wait && (!T_base_sensor || overtook_jump)) return;
+    const SemanticObjectArray message = std::move(waiting_objects_.front().message);
+    waiting_objects_.pop_front();  // before anything can fail: a message is tried once
     if (T_base_sensor) {
       add(message, *T_base_sensor);
     } else {
-      ++estimator_.objects_without_transform;
-      estimator_.unconnected_frame = message.header.frame_id;
+      ++estimator_.refused.objects_without_transform;
+      estimator_.refused.unconnected_frame = message.header.frame_id;
     }
-    waiting_objects_.pop_front();
   }
 }
 
 void SlamNode::add(const SemanticObjectArray& message, const Pose& T_base_sensor) {
   for (const SemanticObject& object : message.objects) {
-    if (!classes_.findId(object.class_id)) ++estimator_.unknown_classes[object.class_id];
+    if (!classes_.findId(object.class_id)) ++estimator_.refused.unknown_classes[object.class_id];
   }
   std::size_t unknown_classes = 0;
   slam_->addDetections(toStamp(message.header.stamp), fromMessage(message, classes_, T_base_sensor, unknown_classes));
@@ -216,7 +243,7 @@ void SlamNode::noteStatus() {
   noted_estimator_ = estimator_;
 }
 
-void SlamNode::publishSlowTopics(const ros::WallTimerEvent&) {
+void SlamNode::publishSlowTopics() {
   std::unique_lock<TicketMutex> lock(slam_mutex_);
   if (live_.version() != published_live_) {
     published_live_ = live_.version();

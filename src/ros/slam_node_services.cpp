@@ -9,6 +9,11 @@
 
 // What other nodes ask of the node: its services, and the status behind its diagnostics.
 namespace semantic_mht_slam {
+namespace {
+
+constexpr double kFarthest_m = 1e7;  // a quarter round the Earth
+
+}  // namespace
 
 void SlamNode::advertiseServices() {
   services_.push_back(handle_.advertiseService("finish_submap", &SlamNode::finishSubmap, this));
@@ -23,112 +28,145 @@ std::unique_lock<TicketMutex> SlamNode::lockCaughtUp() {
   return std::unique_lock<TicketMutex>(slam_mutex_);
 }
 
-bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  const auto lock = lockCaughtUp();
-  const std::size_t before = slam_->map().submaps().size();
-  slam_->finish();
-  const std::size_t submaps = slam_->map().submaps().size();
-  response.success = submaps > before;
-  if (!response.success) {
-    response.message = config_.slam.method == Method::kOdometry ? "the method 'odometry' makes no map"
-                                                                : "no submap is open: no objects since the last one";
-    return true;
+template <class Response, class Body>
+bool SlamNode::answer(const std::string& service, Response& response, const Body& body) {
+  if (!other_failures_.run(service, body)) {
+    response.success = false;
+    response.message = "unexpected failure of " + other_failures_.status().newest;
   }
-  publisher_.publishMap(*slam_, live_.get());
-  published_odometry_ = 0;  // the trajectory may have been corrected
-  noteStatus();
-  response.message = "submap " + std::to_string(submaps - 1) + " is finished; the map holds " +
-                     std::to_string(publisher_.landmarks()) + " landmarks";
   return true;
+}
+
+bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  return answer("finish_submap", response, [&] {
+    const auto lock = lockCaughtUp();
+    const std::size_t before = slam_->map().submaps().size();
+    slam_->finish();
+    const std::size_t submaps = slam_->map().submaps().size();
+    response.success = submaps > before;
+    if (!response.success) {
+      response.message = config_.slam.method == Method::kOdometry ? "the method 'odometry' makes no map"
+                                                                  : "no submap is open: no objects since the last one";
+      return;
+    }
+    publisher_.publishMap(*slam_, live_.get());
+    published_odometry_ = 0;  // the trajectory may have been corrected
+    noteStatus();
+    response.message = "submap " + std::to_string(submaps - 1) + " is finished; the map holds " +
+                       std::to_string(publisher_.landmarks()) + " landmarks";
+  });
 }
 
 bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  const auto lock = lockCaughtUp();
-  const std::size_t landmarks = publisher_.landmarks();
-  waiting_objects_.clear();
-  startAgain();
-  noteStatus();
-  response.success = true;
-  response.message = "a new map begins; the old one had " + std::to_string(landmarks) + " landmarks";
-  return true;
+  return answer("reset", response, [&] {
+    const auto lock = lockCaughtUp();
+    const std::size_t landmarks = publisher_.landmarks();
+    waiting_objects_.clear();
+    startAgain();
+    noteStatus();
+    response.success = true;
+    response.message = "a new map begins; the old one had " + std::to_string(landmarks) + " landmarks";
+  });
 }
 
 bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
-  auto lock = lockCaughtUp();
-  const SavedMap map = mapOf(*slam_, [&] { lock.unlock(); });
-  try {
-    response.bytes = writeMapFile(request.path, map, config_, classes_);
-  } catch (const InputError& error) {
-    response.message = error.what();
-    return true;
-  }
-  response.success = true;
-  response.message = std::to_string(map.landmarks.size()) + " landmarks of " + std::to_string(map.submaps) +
-                     " finished submaps, and the open one, are in '" + request.path + "'";
-  return true;
+  return answer("save_map", response, [&] {
+    auto lock = lockCaughtUp();
+    const SavedMap map = mapOf(*slam_, [&] { lock.unlock(); });
+    try {
+      response.bytes = writeMapFile(request.path, map, config_, classes_);
+    } catch (const InputError& error) {
+      response.message = error.what();
+      return;
+    }
+    response.success = true;
+    response.message = std::to_string(map.landmarks.size()) + " landmarks of " + std::to_string(map.submaps) +
+                       " finished submaps, and the open one, are in '" + request.path + "'";
+  });
 }
 
 bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
-  std::unique_ptr<Slam> loaded;
-  bool has_same_parameters = true;
-  try {
-    const LoadedMap map = readMapFile(request.path, config_, classes_, ros::ok);
-    has_same_parameters = map.has_same_parameters;
-    loaded = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
-  } catch (const InputError& error) {
-    response.message = std::string(error.what()) + "; the running map stays";
-    return true;
-  }
-  const auto lock = lockCaughtUp();
-  slam_ = std::move(loaded);
-  is_loaded_ = true;
-  if (is_localization_wanted_ && !slam_->map().submaps().empty()) slam_->localize();
-  waiting_objects_.clear();
-  published_odometry_ = 0;
-  publisher_.showLoaded(*slam_, live_.get());
-  noteStatus();
-  response.success = true;
-  response.message = "the map has " + std::to_string(publisher_.landmarks()) + " landmarks of " +
-                     std::to_string(slam_->map().submaps().size()) + " finished submaps";
-  if (!has_same_parameters) response.message += "; it was made with other parameters than the present ones";
-  return true;
+  return answer("load_map", response, [&] {
+    std::unique_ptr<Slam> other;  // the loaded one, and then the one before
+    bool has_same_parameters = true;
+    try {
+      const LoadedMap map = readMapFile(request.path, config_, classes_, ros::ok);
+      has_same_parameters = map.has_same_parameters;
+      other = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
+    } catch (const InputError& error) {
+      response.message = std::string(error.what()) + "; the running map stays";
+      return;
+    }
+    const auto lock = lockCaughtUp();
+    slam_.swap(other);
+    try {
+      if (is_localization_wanted_ && !slam_->map().submaps().empty()) slam_->localize();
+      publisher_.showLoaded(*slam_, live_.get());
+    } catch (const std::exception& error) {
+      slam_.swap(other);
+      publisher_.showLoaded(*slam_, live_.get());
+      response.message = request.path + ": cannot be gone on with: " + error.what() + "; the running map stays";
+      return;
+    }
+    is_loaded_ = true;
+    waiting_objects_.clear();
+    published_odometry_ = 0;
+    input_failures_.forgetRow();
+    noteStatus();
+    response.success = true;
+    response.message = "the map has " + std::to_string(publisher_.landmarks()) + " landmarks of " +
+                       std::to_string(slam_->map().submaps().size()) + " finished submaps";
+    if (!has_same_parameters) response.message += "; it was made with other parameters than the present ones";
+  });
 }
 
 bool SlamNode::setMode(SetMode::Request& request, SetMode::Response& response) {
-  const auto lock = lockCaughtUp();
-  if (request.mode == SetMode::Request::MAPPING) {
-    slam_->resumeMapping();
-    is_localization_wanted_ = false;
-    response.success = true;
-    response.message = slam_->isLocated() ? "mapping" : "mapping, as soon as the vehicle has found itself in the map";
-  } else if (request.mode == SetMode::Request::LOCALIZATION) {
-    try {
-      slam_->localize();
-      is_localization_wanted_ = true;
+  return answer("set_mode", response, [&] {
+    const auto lock = lockCaughtUp();
+    if (request.mode == SetMode::Request::MAPPING) {
+      slam_->resumeMapping();
+      is_localization_wanted_ = false;
       response.success = true;
-      response.message = slam_->isLocated() ? "localization" : "localization; the vehicle looks for itself in the map";
-      publisher_.publishMap(*slam_, live_.get());
-    } catch (const std::logic_error&) {
-      response.message = "there is no map yet that one could find oneself in; the node goes on mapping";
+      response.message = slam_->isLocated() ? "mapping" : "mapping, as soon as the vehicle has found itself in the map";
+    } else if (request.mode == SetMode::Request::LOCALIZATION) {
+      try {
+        slam_->localize();
+        is_localization_wanted_ = true;
+        response.success = true;
+        response.message =
+            slam_->isLocated() ? "localization" : "localization; the vehicle looks for itself in the map";
+        publisher_.publishMap(*slam_, live_.get());
+      } catch (const std::logic_error&) {
+        response.message = "there is no map yet that one could find oneself in; the node goes on mapping";
+      }
+    } else {
+      response.message = "there is no mode " + std::to_string(request.mode) + "; 0 is mapping, 1 localization";
     }
-  } else {
-    response.message = "there is no mode " + std::to_string(request.mode) + "; 0 is mapping, 1 localization";
-  }
-  noteStatus();
-  return true;
+    noteStatus();
+  });
 }
 
 void SlamNode::expectAt(const geometry_msgs::PoseWithCovarianceStamped& message) {
   const Pose T_map_base = fromMessage(message.pose.pose);
-  if (withoutSlash(message.header.frame_id) != config_.node.map_frame || !T_map_base.isValid()) {
-    ROS_WARN("initialpose is ignored: it is no pose in '%s'", config_.node.map_frame.c_str());
-    return;
-  }
-  const double stddev_m = std::sqrt(std::max({0.0, message.pose.covariance[0], message.pose.covariance[7]}));
+  const double variance_m2 = std::max({0.0, message.pose.covariance[0], message.pose.covariance[7]});
+  const auto& covariance = message.pose.covariance;
   const auto lock = lockCaughtUp();
-  if (!slam_->expectAt(T_map_base, stddev_m)) {
-    ROS_WARN("initialpose is ignored: the node does not localize, or has no odometry yet");
+  if (withoutSlash(message.header.frame_id) != config_.node.map_frame) {
+    refuseInitialPose("it is in '" + message.header.frame_id + "', not in '" + config_.node.map_frame + "'");
+  } else if (!T_map_base.isValid() || T_map_base.translation_m.cwiseAbs().maxCoeff() > kFarthest_m) {
+    refuseInitialPose("it is not finite, far from anything on Earth, or its quaternion has no unit norm");
+  } else if (!std::all_of(covariance.begin(), covariance.end(), [](double value) { return std::isfinite(value); })) {
+    refuseInitialPose("its covariance is not finite");
+  } else if (!slam_->expectAt(T_map_base, std::min(std::sqrt(variance_m2), kFarthest_m))) {
+    refuseInitialPose("the node does not localize, or has no odometry yet");
   }
+}
+
+void SlamNode::refuseInitialPose(const std::string& problem) {
+  ++estimator_.initial_poses_refused;
+  estimator_.initial_pose_problem = problem;
+  ROS_WARN_STREAM("initialpose is refused: " << problem);
+  noteStatus();
 }
 
 ClockStatus SlamNode::clockStatus() {
@@ -155,6 +193,8 @@ NodeStatus SlamNode::status() {
   status.queue_length = queue_.length();
   status.queue_capacity = static_cast<std::size_t>(config_.node.queue_size);
   status.queue_dropped = queue_.dropped();
+  status.input_failures = input_failures_.status();
+  status.other_failures = other_failures_.status();
   status.resident_mb = residentMegabytes();
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);

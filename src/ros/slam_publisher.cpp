@@ -35,18 +35,28 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
 
 void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
   const StampedPose latest = *slam.latestPose();
-  const Pose T_map_odom = slam.T_map_odom();
-  const Pose T_odom_base = T_map_odom.inverse() * latest.T_world_base;
+  T_map_odom_ = slam.T_map_odom();
+  const Pose T_odom_base = T_map_odom_->inverse() * latest.T_world_base;
   if (odometry_.empty() || (odometry_.back().translation_m - T_odom_base.translation_m).norm() > kOdometrySpacing_m) {
     odometry_.push_back(T_odom_base);
   }
-  const Pose followed = correction_.follow(T_map_odom, T_odom_base, latest.stamp, live);
-  transform_broadcaster_.sendTransform(toTransform({latest.stamp, followed}, config_.map_frame, config_.odom_frame));
+  sendPose(latest, T_odom_base, live);
+}
+
+void SlamPublisher::publishDeadReckoning(const StampedPose& T_odom_base, const LiveConfig& live) {
+  if (!T_map_odom_) return;
+  sendPose({T_odom_base.stamp, *T_map_odom_ * T_odom_base.T_world_base}, T_odom_base.T_world_base, live);
+}
+
+void SlamPublisher::sendPose(const StampedPose& T_map_base, const Pose& T_odom_base, const LiveConfig& live) {
+  const Pose followed = correction_.follow(*T_map_odom_, T_odom_base, T_map_base.stamp, live);
+  transform_broadcaster_.sendTransform(
+      toTransform({T_map_base.stamp, followed}, config_.map_frame, config_.odom_frame));
   geometry_msgs::PoseWithCovarianceStamped message;
-  message.header.stamp = toRosTime(latest.stamp);
+  message.header.stamp = toRosTime(T_map_base.stamp);
   message.header.frame_id = config_.map_frame;
   const bool is_there = live.correction == CorrectionPolicy::kJump;
-  message.pose.pose = toMessage(is_there ? latest.T_world_base : followed * T_odom_base);
+  message.pose.pose = toMessage(is_there ? T_map_base.T_world_base : followed * T_odom_base);
   pose_publisher_.publish(message);
 }
 
@@ -93,6 +103,7 @@ std::vector<Pose> SlamPublisher::odometry() const {
 
 void SlamPublisher::startAgain(const Slam& slam) {
   correction_.reset();
+  T_map_odom_.reset();
   published_frame_.reset();
   published_submaps_ = 0;
   published_closures_ = 0;

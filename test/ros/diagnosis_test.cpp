@@ -57,8 +57,8 @@ TEST_P(DiagnosisTest, WhatWasDroppedLongAgoIsNoFaultAnyMore) {
   const EstimatorStatus fresh = status.estimator;
   GetParam().cause(status);
   const bool is_about_drops = status.estimator.counters.odometry_invalid > fresh.counters.odometry_invalid ||
-                              status.queue_dropped > 0 || !status.estimator.unknown_classes.empty() ||
-                              status.estimator.objects_without_transform > 0;
+                              status.queue_dropped > 0 || !status.estimator.refused.unknown_classes.empty() ||
+                              status.estimator.refused.objects_without_transform > 0;
   if (!is_about_drops) return;
   DiagnosticStatusWrapper later;
   GetParam().diagnose(status, status, later);
@@ -104,8 +104,8 @@ const std::vector<Fault> kFaults = {
      diagnoseOdometry,
      DiagnosticStatus::ERROR,
      [](NodeStatus& s) {
-       s.estimator.odometry_wrong_frames = 3;
-       s.estimator.wrong_frames = "'camera_init' to 'camera'";
+       s.estimator.refused.odometry_wrong_frames = 3;
+       s.estimator.refused.wrong_frames = "'camera_init' to 'camera'";
      },
      {"'camera_init' to 'camera'", "'odom' to 'base_link'"}},
     {"InvalidOdometry",
@@ -130,8 +130,8 @@ const std::vector<Fault> kFaults = {
      diagnoseObjects,
      DiagnosticStatus::ERROR,
      [](NodeStatus& s) {
-       s.estimator.objects_without_transform = 1;
-       s.estimator.unconnected_frame = "nowhere";
+       s.estimator.refused.objects_without_transform = 1;
+       s.estimator.refused.unconnected_frame = "nowhere";
      },
      {"'nowhere' to 'base_link'"}},
     {"StampsBehind",
@@ -154,9 +154,53 @@ const std::vector<Fault> kFaults = {
      diagnoseObjects,
      DiagnosticStatus::WARN,
      [](NodeStatus& s) {
-       s.estimator.unknown_classes = {{7, 2}, {99, 1}};
+       s.estimator.refused.unknown_classes = {{7, 2}, {99, 1}};
      },
      {"class ids 7, 99", "classes.yaml"}},
+    {"ZeroOdometryStamps",
+     diagnoseOdometry,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) { s.estimator.refused.odometry_bad_stamps = 2; },
+     {"/odometry is stamped zero"}},
+    {"OneOdometryStampFarFromTheOthers",
+     diagnoseOdometry,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.estimator.refused.odometry_stamp_outliers = 1; },
+     {"single stamps far from the others"}},
+    {"ZeroObjectStamps",
+     diagnoseObjects,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) { s.estimator.refused.objects_bad_stamps = 2; },
+     {"/objects is stamped zero"}},
+    {"OneFailure",
+     diagnoseEstimator,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.input_failures = {1, 0, "objects: no inverse"};
+     },
+     {"dropped a message", "objects: no inverse"}},
+    {"FailureThatLasts",
+     diagnoseEstimator,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.input_failures = {7, 3, "odometry: no inverse"};
+     },
+     {"stands still", "odometry: no inverse"}},
+    {"FailureOfAService",
+     diagnoseEstimator,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) {
+       s.other_failures = {1, 1, "save_map: no memory"};
+     },
+     {"save_map: no memory"}},
+    {"InitialPoseRefused",
+     diagnoseEstimator,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.estimator.initial_poses_refused = 1;
+       s.estimator.initial_pose_problem = "its covariance is not finite";
+     },
+     {"initialpose", "its covariance is not finite"}},
     {"FullQueue", diagnoseQueue, DiagnosticStatus::WARN, [](NodeStatus& s) { s.queue_dropped = 5; }, {"full"}},
 };
 

@@ -2,24 +2,23 @@
 
 #include <cstddef>
 #include <deque>
-#include <map>
 #include <optional>
 #include <string>
 
+#include "semantic_mht_slam/app/refused_input.h"
+#include "semantic_mht_slam/ros/failure_guard.h"
 #include "semantic_mht_slam/ros/topic_monitor.h"
-#include "semantic_mht_slam/slam/frame_assembler.h"
 
 namespace semantic_mht_slam {
 
 /// What the node's worker knows of its input and of the estimator.
 struct EstimatorStatus {
   InputCounters counters;
-  std::size_t odometry_wrong_frames = 0;
-  std::string wrong_frames;  ///< the newest ones, "'camera_init' to 'camera'"
-  std::size_t objects_without_transform = 0;
-  std::string unconnected_frame;               ///< the newest one
-  std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
-  std::size_t resets = 0;                      ///< new maps begun
+  RefusedInput refused;
+  std::size_t initial_poses_refused = 0;
+  std::string initial_pose_problem;       ///< of the newest one
+  std::size_t objects_while_failing = 0;  ///< messages dropped because the estimator stands still
+  std::size_t resets = 0;                 ///< new maps begun
   std::string method;
   std::string mode = "mapping";
   std::size_t hypotheses = 0;
@@ -66,6 +65,8 @@ struct NodeStatus {
   std::size_t queue_length = 0;
   std::size_t queue_capacity = 0;
   std::size_t queue_dropped = 0;
+  FailureStatus input_failures;  ///< of the worker, which handles the input
+  FailureStatus other_failures;  ///< of services, timers and `initialpose`
   FrameTimes frame_times;
   double resident_mb = 0.0;
 };

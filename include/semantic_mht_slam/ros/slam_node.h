@@ -18,14 +18,15 @@
 
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/ros/failure_guard.h"
 #include "semantic_mht_slam/ros/input_queue.h"
-#include "semantic_mht_slam/ros/input_warnings.h"
 #include "semantic_mht_slam/ros/live_parameters.h"
 #include "semantic_mht_slam/ros/node_diagnostics.h"
+#include "semantic_mht_slam/ros/odometry_gate.h"
 #include "semantic_mht_slam/ros/sensor_transforms.h"
 #include "semantic_mht_slam/ros/slam_publisher.h"
+#include "semantic_mht_slam/ros/throttled_warnings.h"
 #include "semantic_mht_slam/ros/ticket_mutex.h"
-#include "semantic_mht_slam/ros/time_jump_guard.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 namespace semantic_mht_slam {
@@ -33,7 +34,9 @@ namespace semantic_mht_slam {
 /// The ROS node, in a process of its own or in that of a nodelet manager. Subscribers put messages into a bounded
 /// queue; one worker thread owns the estimator, takes them out and publishes; a wall timer publishes `trajectory` when
 /// it has changed, so that the last one goes out even if the clock of a replay has stopped. Services come
-/// after the messages that the node received before the request, and change the estimator between two messages.
+/// after the messages that the node received before the request, and change the estimator between two messages. A
+/// failure that nobody foresaw drops its message; after three in a row the estimator stands still and the pose goes on
+/// by odometry alone, until `reset` or `load_map`.
 class SlamNode {
  public:
   SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle, const SystemConfig& config,
@@ -60,11 +63,14 @@ class SlamNode {
 
   // The worker.
   void work();
+  void handleSafely(const InputMessage& message);
+  void handleTimed(const InputMessage& message);
+  void deadReckon(const nav_msgs::Odometry& message);
+  void warnOfDrops();
   void handle(const nav_msgs::Odometry& message);
   void handle(const SemanticObjectArray& message);
   void process(const nav_msgs::Odometry& message);
   void beginSessionUnlessGoingOn(const nav_msgs::Odometry& message);
-  bool isExpectedFrame(const nav_msgs::Odometry& message);
   std::optional<Stamp> latestStamp() const;
   void retryObjects();
   void add(const SemanticObjectArray& message, const Pose& T_base_sensor);
@@ -77,13 +83,17 @@ class SlamNode {
 
   /// The estimator for a service: it has seen every message that the node received before the request.
   std::unique_lock<TicketMutex> lockCaughtUp();
+  /// Lets `body` answer; a failure becomes the answer. Always true: the service was called.
+  template <class Response, class Body>
+  bool answer(const std::string& service, Response& response, const Body& body);
   bool finishSubmap(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void expectAt(const geometry_msgs::PoseWithCovarianceStamped& message);
+  void refuseInitialPose(const std::string& problem);
   bool saveMap(SaveMap::Request& request, SaveMap::Response& response);
   bool loadMap(LoadMap::Request& request, LoadMap::Response& response);
   bool setMode(SetMode::Request& request, SetMode::Response& response);
-  void publishSlowTopics(const ros::WallTimerEvent& event);
+  void publishSlowTopics();
   NodeStatus status();
   ClockStatus clockStatus();
 
@@ -97,7 +107,7 @@ class SlamNode {
   TicketMutex slam_mutex_;
   std::unique_ptr<Slam> slam_;
   SlamPublisher publisher_;
-  TimeJumpGuard jump_;
+  OdometryGate gate_;
   bool is_localization_wanted_ = false;
   bool is_loaded_ = false;  ///< the map is from a file, and no odometry has come since
   std::deque<WaitingObjects> waiting_objects_;
@@ -112,7 +122,7 @@ class SlamNode {
   TopicMonitor objects_monitor_;
 
   // Of the worker, of the timer's thread, or of the spinner thread.
-  Warnings warnings_;
+  ThrottledWarnings warnings_;
   std::size_t published_odometry_ = 0;  ///< guarded by `slam_mutex_`
   std::size_t published_live_ = 1;
   ros::WallTime next_trajectory_;
@@ -120,6 +130,8 @@ class SlamNode {
   ros::Time last_time_;
   ros::WallTime last_time_change_ = ros::WallTime::now();
 
+  FailureGuard input_failures_;
+  FailureGuard other_failures_;
   InputQueue queue_;
   ros::Subscriber odometry_subscriber_;
   ros::Subscriber objects_subscriber_;

@@ -26,6 +26,10 @@ class SlamPublisher {
   /// tf and pose of the newest odometry sample, with the correction that the policy allows.
   void publishPose(const Slam& slam, const LiveConfig& live);
 
+  /// tf and pose of an odometry sample with the newest correction that was published: the estimator is not asked. Does
+  /// nothing before the first pose of a map.
+  void publishDeadReckoning(const StampedPose& T_odom_base, const LiveConfig& live);
+
   /// Objects and hypotheses of the newest frame if it is a new one, and the map if a submap was finished.
   void publishFrame(const Slam& slam, const LiveConfig& live);
 
@@ -61,6 +65,8 @@ class SlamPublisher {
   std::size_t loops() const { return loops_; }
 
  private:
+  void sendPose(const StampedPose& T_map_base, const Pose& T_odom_base, const LiveConfig& live);
+
   const NodeConfig config_;
   const ClassTable classes_;
   tf2_ros::TransformBroadcaster transform_broadcaster_;
@@ -75,6 +81,7 @@ class SlamPublisher {
   ros::Publisher hypotheses_publisher_;
   ros::Publisher map_publisher_;
   CorrectionFollower correction_;
+  std::optional<Pose> T_map_odom_;  ///< of the newest pose
   std::optional<Stamp> published_frame_;
   std::size_t published_submaps_ = 0;
   std::size_t published_closures_ = 0;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/slam/frame_assembler.h"
+
+namespace semantic_mht_slam {
+
+/// What was refused before it came to the estimator, by cause; the estimator counts the rest (`InputCounters`).
+struct RefusedInput {
+  std::size_t odometry_wrong_frames = 0;
+  std::string wrong_frames;                 ///< the newest ones, "'camera_init' to 'camera'"
+  std::size_t odometry_bad_stamps = 0;      ///< zero, or in the last hour of ROS's time
+  std::size_t odometry_stamp_outliers = 0;  ///< one message stamped far from those before and after it
+  std::size_t objects_bad_stamps = 0;
+  std::size_t objects_without_transform = 0;
+  std::string unconnected_frame;               ///< the newest one
+  std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
+};
+
+/// Names of the two inputs in messages to the user: topics, or files.
+struct InputNames {
+  std::string odometry = "odometry";
+  std::string objects = "objects";
+};
+
+/// What was dropped of the two inputs so far, a line for each cause: the input, how many, and why.
+std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
+                                      const InputNames& names, const std::string& base_frame);
+
+}  // namespace semantic_mht_slam

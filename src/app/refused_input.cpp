@@ -1,0 +1,39 @@
+#include "semantic_mht_slam/app/refused_input.h"
+
+namespace semantic_mht_slam {
+
+std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
+                                      const InputNames& names, const std::string& base_frame) {
+  std::vector<std::string> lines;
+  const auto report = [&](std::size_t count, const std::string& name, const std::string& problem) {
+    if (count > 0) lines.push_back(name + ": " + std::to_string(count) + " " + problem);
+  };
+  const auto odometry = [&](std::size_t count, const std::string& problem) {
+    report(count, names.odometry, "messages dropped: " + problem);
+  };
+  const auto objects = [&](std::size_t count, const std::string& problem) {
+    report(count, names.objects, "messages dropped: " + problem);
+  };
+  odometry(refused.odometry_wrong_frames,
+           "from " + refused.wrong_frames + ", other frames than node.odom_frame and node.base_frame");
+  odometry(refused.odometry_bad_stamps, "the stamp is zero, or beyond the end of ROS's time");
+  odometry(refused.odometry_stamp_outliers, "the stamp is far from those of the messages before and after");
+  odometry(counters.odometry_invalid, "not finite, beyond 1e10 m, or a quaternion without unit norm");
+  odometry(counters.odometry_not_rising, "the stamp does not rise");
+  objects(refused.objects_bad_stamps, "the stamp is zero, or beyond the end of ROS's time");
+  objects(refused.objects_without_transform,
+          "no transform from '" + refused.unconnected_frame + "' to '" + base_frame + "'");
+  for (const auto& [id, count] : refused.unknown_classes) {
+    report(count, names.objects, "objects dropped: class id '" + std::to_string(id) + "' is not in the class table");
+  }
+  report(counters.detections_invalid, names.objects,
+         "objects dropped: position, covariance, score or size is unusable");
+  objects(counters.frames_before_odometry, "older than the odometry");
+  objects(counters.frames_not_rising, "the stamp does not rise");
+  objects(counters.frames_far_ahead, "the stamp is far ahead of the odometry");
+  objects(counters.frames_in_odometry_gap, "in a gap of the odometry (input.max_odometry_gap)");
+  objects(counters.frames_waiting_too_long, "waited too long for odometry");
+  return lines;
+}
+
+}  // namespace semantic_mht_slam
