@@ -54,6 +54,11 @@ void describe(NodeConfig& config, Fields& fields) {
       "Most poses in the topics trajectory and markers/odometry; of longer drives every 2nd, 4th, ... is shown.");
   fields.add("reset_after_jump_back", config.reset_after_jump_back_s, "s", {0.0, 3600.0},
              "Odometry whose stamp falls back by more than this starts a new map.");
+  fields.add("publish_tf", config.publishes_tf, "Whether tf map -> odom is published; the topic pose says the same.");
+  fields.add("map", config.map, "Map file to begin with, an absolute path; empty: a new map.");
+  fields.add<StartMode>("mode", config.mode,
+                        {{"mapping", StartMode::kMapping}, {"localization", StartMode::kLocalization}},
+                        "What the node begins with: mapping goes on in `map`, localization leaves it as it is.");
   fields.group("live", config.live);
 }
 

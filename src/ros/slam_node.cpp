@@ -5,6 +5,7 @@
 
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/parameters.h"
+#include "semantic_mht_slam/ros/starting_map.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -19,17 +20,20 @@ double wallSeconds() {
 }  // namespace
 
 SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle, const SystemConfig& config,
-                   const ClassTable& classes)
+                   const ClassTable& classes, std::unique_ptr<Slam> slam)
     : handle_(handle),
       config_(config),
       classes_(classes),
       live_(ros::NodeHandle(private_handle, "node/live")),
       sensors_(config.node.base_frame),
-      slam_(std::make_unique<Slam>(config.slam, classes)),
+      slam_(std::move(slam)),
       publisher_(handle, config.node, classes),
       gate_(config.node),
+      is_localization_wanted_(config.node.mode == StartMode::kLocalization),
+      is_loaded_(!config.node.map.empty()),
       queue_(static_cast<std::size_t>(config.node.queue_size)) {
   estimator_.method = nameOf(config.slam.method);
+  if (is_loaded_) publisher_.showLoaded(*slam_, live_.get());
   noteStatus();
   subscribe();
   advertiseServices();
@@ -266,7 +270,8 @@ std::unique_ptr<SlamNode> makeSlamNode(const ros::NodeHandle& handle, const ros:
   SystemConfig config = makeSystemConfig(readParameters(private_handle));
   requireUsableFrames(config.node);
   config.slam = loadableSlamConfig(config, config_folder);
-  return std::make_unique<SlamNode>(handle, private_handle, config, loadClassTable(config, config_folder));
+  const ClassTable classes = loadClassTable(config, config_folder);
+  return std::make_unique<SlamNode>(handle, private_handle, config, classes, startingSlam(config, classes));
 }
 
 }  // namespace semantic_mht_slam

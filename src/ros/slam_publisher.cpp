@@ -50,8 +50,10 @@ void SlamPublisher::publishDeadReckoning(const StampedPose& T_odom_base, const L
 
 void SlamPublisher::sendPose(const StampedPose& T_map_base, const Pose& T_odom_base, const LiveConfig& live) {
   const Pose followed = correction_.follow(*T_map_odom_, T_odom_base, T_map_base.stamp, live);
-  transform_broadcaster_.sendTransform(
-      toTransform({T_map_base.stamp, followed}, config_.map_frame, config_.odom_frame));
+  if (config_.publishes_tf) {
+    transform_broadcaster_.sendTransform(
+        toTransform({T_map_base.stamp, followed}, config_.map_frame, config_.odom_frame));
+  }
   geometry_msgs::PoseWithCovarianceStamped message;
   message.header.stamp = toRosTime(T_map_base.stamp);
   message.header.frame_id = config_.map_frame;

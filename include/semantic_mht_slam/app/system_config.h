@@ -10,6 +10,9 @@
 
 namespace semantic_mht_slam {
 
+/// What the node does with the map from its start on.
+enum class StartMode { kMapping, kLocalization };
+
 /// What only the ROS node uses.
 struct NodeConfig {
   std::string map_frame = "map";
@@ -20,6 +23,9 @@ struct NodeConfig {
   double trajectory_period_s = 0.5;
   int trajectory_poses = 20000;
   double reset_after_jump_back_s = 1.0;
+  bool publishes_tf = true;
+  std::string map;  ///< a map file; empty: none
+  StartMode mode = StartMode::kMapping;
   LiveConfig live;
 };
 

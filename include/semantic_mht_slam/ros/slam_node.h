@@ -39,8 +39,9 @@ namespace semantic_mht_slam {
 /// by odometry alone, until `reset` or `load_map`.
 class SlamNode {
  public:
+  /// `slam`: of `startingSlam`.
   SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle, const SystemConfig& config,
-           const ClassTable& classes);
+           const ClassTable& classes, std::unique_ptr<Slam> slam);
 
   /// Stops the worker; messages that still wait are given up.
   ~SlamNode();
@@ -108,8 +109,8 @@ class SlamNode {
   std::unique_ptr<Slam> slam_;
   SlamPublisher publisher_;
   OdometryGate gate_;
-  bool is_localization_wanted_ = false;
-  bool is_loaded_ = false;  ///< the map is from a file, and no odometry has come since
+  bool is_localization_wanted_;
+  bool is_loaded_;  ///< the map is from a file, and no odometry has come since
   std::deque<WaitingObjects> waiting_objects_;
   std::optional<Stamp> last_objects_;  ///< the newest to arrive
   EstimatorStatus estimator_;
