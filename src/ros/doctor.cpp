@@ -64,6 +64,20 @@ std::optional<Prescription> timeProblem(const SystemObservation& system) {
   return std::nullopt;
 }
 
+/// How messages of another type come to the node.
+std::string fixOfType(const std::string& part, const std::string& topic, const std::string& type,
+                      const std::string& expected_type) {
+  if (part == "objects") {
+    return "roslaunch semantic_mht_slam object_relay.launch detections:=" + topic +
+           ", and leave objects of slam.launch as it is (docs/object_relay.md)";
+  }
+  if (type == "geometry_msgs/PoseStamped") {
+    return "rosrun semantic_mht_slam odometry_relay pose_in:=" + topic +
+           " odometry:=/odometry, and slam.launch odometry:=/odometry";
+  }
+  return "remap " + part + ":= to a topic of that type ('rostopic find " + expected_type + "')";
+}
+
 /// What a topic carries instead, or where messages of its type can be had.
 std::optional<Prescription> topicProblem(const SystemObservation& system, const std::string& part,
                                          const std::string& expected_type) {
@@ -73,7 +87,7 @@ std::optional<Prescription> topicProblem(const SystemObservation& system, const 
   const auto type = system.type_of_topic.find(topic);
   if (type != system.type_of_topic.end() && type->second != expected_type) {
     return Prescription{topic + " carries " + type->second + ", expected is " + expected_type,
-                        "remap " + part + ":= to a topic of that type ('rostopic find " + expected_type + "')"};
+                        fixOfType(part, topic, type->second, expected_type)};
   }
   if (valueOf(*status, "messages") != "0") return std::nullopt;
   std::vector<std::string> candidates;

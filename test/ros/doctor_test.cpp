@@ -79,6 +79,19 @@ TEST(DoctorTest, SilentTopicIsAnsweredWithTopicsOfTheRightType) {
   EXPECT_NE(firstProblem(system)->fix.find("odometry:=/laser_odom_to_init"), std::string::npos);
   system.type_of_topic = {{"/odometry", "geometry_msgs/PoseStamped"}};
   EXPECT_EQ(problemOf(system), "/odometry carries geometry_msgs/PoseStamped, expected is nav_msgs/Odometry");
+  EXPECT_NE(firstProblem(system)->fix.find("odometry_relay pose_in:=/odometry"), std::string::npos);
+  system.type_of_topic = {{"/odometry", "nav_msgs/Path"}};
+  EXPECT_NE(firstProblem(system)->fix.find("rostopic find nav_msgs/Odometry"), std::string::npos);
+}
+
+TEST(DoctorTest, DetectionsOfAnotherTypeAreAnsweredWithTheRelay) {
+  SystemObservation system = wellSystem();
+  system.diagnostics[2] =
+      makeStatus("objects", DiagnosticStatus::ERROR, "no objects on /boxes", {{"topic", "/boxes"}, {"messages", "0"}});
+  system.type_of_topic = {{"/boxes", "jsk_recognition_msgs/BoundingBoxArray"}};
+  EXPECT_EQ(problemOf(system),
+            "/boxes carries jsk_recognition_msgs/BoundingBoxArray, expected is semantic_mht_slam/SemanticObjectArray");
+  EXPECT_NE(firstProblem(system)->fix.find("object_relay.launch detections:=/boxes"), std::string::npos);
 }
 
 }  // namespace
