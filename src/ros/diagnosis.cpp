@@ -249,6 +249,7 @@ void diagnoseEstimator(const NodeStatus& now, const NodeStatus& before, Diagnost
   status.add("unexpected failures of the input", now.input_failures.count);
   status.add("unexpected failures of services and timers", now.other_failures.count);
   status.add("objects dropped while it stands still", estimator.objects_while_failing);
+  status.add("objects not used while paused", estimator.objects_while_paused);
   status.add("frame time, mean (ms)", formatFixed(now.frame_times.mean_ms, 3));
   status.add("frame time, p99 (ms)", formatFixed(now.frame_times.p99_ms, 3));
   status.add("frame time, max (ms)", formatFixed(now.frame_times.max_ms, 3));

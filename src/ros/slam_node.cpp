@@ -196,6 +196,10 @@ void SlamNode::handle(const SemanticObjectArray& message) {
     ++estimator_.refused.objects_bad_stamps;
     return;
   }
+  if (is_paused_) {
+    ++estimator_.objects_while_paused;
+    return;
+  }
   const Stamp stamp = toStamp(message.header.stamp);
   const bool falls_back = gate_.isBack(stamp, last_objects_);
   last_objects_ = stamp;
@@ -239,6 +243,7 @@ void SlamNode::noteStatus() {
   estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
   if (!slam_->isLocated()) estimator_.mode += ", lost";
   if (slam_->isFollowing()) estimator_.mode += ", known place";
+  if (is_paused_) estimator_.mode += ", paused";
   estimator_.hypotheses = slam_->hypotheses().size();
   estimator_.submaps = slam_->map().submaps().size();
   estimator_.landmarks = publisher_.landmarks();

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/conversions.h"
@@ -18,6 +19,8 @@ constexpr double kFarthest_m = 1e7;  // a quarter round the Earth
 void SlamNode::advertiseServices() {
   services_.push_back(handle_.advertiseService("finish_submap", &SlamNode::finishSubmap, this));
   services_.push_back(handle_.advertiseService("reset", &SlamNode::reset, this));
+  services_.push_back(handle_.advertiseService("pause", &SlamNode::pause, this));
+  services_.push_back(handle_.advertiseService("resume", &SlamNode::resume, this));
   services_.push_back(handle_.advertiseService("save_map", &SlamNode::saveMap, this));
   services_.push_back(handle_.advertiseService("load_map", &SlamNode::loadMap, this));
   services_.push_back(handle_.advertiseService("set_mode", &SlamNode::setMode, this));
@@ -66,6 +69,25 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
     noteStatus();
     response.success = true;
     response.message = "a new map begins; the old one had " + std::to_string(landmarks) + " landmarks";
+  });
+}
+
+bool SlamNode::pause(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  return answer("pause", response, [&] {
+    const auto lock = lockCaughtUp();
+    response.success = !std::exchange(is_paused_, true);
+    response.message = response.success ? "objects are not used until resume; the pose goes on by odometry"
+                                        : "the node is paused already";
+    noteStatus();
+  });
+}
+
+bool SlamNode::resume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  return answer("resume", response, [&] {
+    const auto lock = lockCaughtUp();
+    response.success = std::exchange(is_paused_, false);
+    response.message = response.success ? "objects are used again" : "the node is not paused";
+    noteStatus();
   });
 }
 

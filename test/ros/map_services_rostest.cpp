@@ -143,6 +143,23 @@ TEST(MapServicesTest, AnotherDriveFindsItselfInALoadedMapAndLeavesItAsItIs) {
   EXPECT_TRUE(waitFor([&] { return driving.node.value("estimator", "submaps") != after; })) << "the map grows again";
 }
 
+TEST(MapServicesTest, PausedNodeUsesNoObjectsAndItsPoseGoesOn) {
+  DrivingNode driving("pausing");
+  ASSERT_TRUE(driving.isReady());
+  EXPECT_FALSE(driving.call<std_srvs::Trigger>("resume").success) << "it is not paused";
+  ASSERT_TRUE(driving.feed(0, 60));
+  EXPECT_TRUE(driving.call<std_srvs::Trigger>("pause").success);
+  EXPECT_FALSE(driving.call<std_srvs::Trigger>("pause").success) << "it is paused";
+  EXPECT_TRUE(driving.node.comesToSay("estimator", "mode", "mapping, paused"));
+  ASSERT_TRUE(driving.feed(60, 100, 60)) << "no frame is used";
+  EXPECT_TRUE(driving.node.comesToSay("estimator", "objects not used while paused", "40"));
+  EXPECT_TRUE(driving.node.comesToSay("odometry", "used", "100"));
+  EXPECT_TRUE(driving.call<std_srvs::Trigger>("resume").success);
+  ASSERT_TRUE(driving.feed(100, 160, 120));
+  EXPECT_EQ(driving.finalTrajectory(160).size(), 160U);
+  EXPECT_EQ(driving.node.value("estimator", "mode"), "mapping");
+}
+
 TEST(MapServicesTest, InterruptEndsTheNodeWithinTwoSecondsWhileItLoads) {
   const TemporaryFolder folder;
   const std::string path = writeMap(folder / "heavy.bag", 100, 150);

@@ -18,6 +18,7 @@ struct EstimatorStatus {
   std::size_t initial_poses_refused = 0;
   std::string initial_pose_problem;       ///< of the newest one
   std::size_t objects_while_failing = 0;  ///< messages dropped because the estimator stands still
+  std::size_t objects_while_paused = 0;   ///< messages that were not wanted
   std::size_t resets = 0;                 ///< new maps begun
   std::string method;
   std::string mode = "mapping";

@@ -89,6 +89,8 @@ class SlamNode {
   bool answer(const std::string& service, Response& response, const Body& body);
   bool finishSubmap(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool reset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool pause(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool resume(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void expectAt(const geometry_msgs::PoseWithCovarianceStamped& message);
   void refuseInitialPose(const std::string& problem);
   bool saveMap(SaveMap::Request& request, SaveMap::Response& response);
@@ -110,7 +112,8 @@ class SlamNode {
   SlamPublisher publisher_;
   OdometryGate gate_;
   bool is_localization_wanted_;
-  bool is_loaded_;  ///< the map is from a file, and no odometry has come since
+  bool is_paused_ = false;  ///< objects are dropped as they come
+  bool is_loaded_;          ///< the map is from a file, and no odometry has come since
   std::deque<WaitingObjects> waiting_objects_;
   std::optional<Stamp> last_objects_;  ///< the newest to arrive
   EstimatorStatus estimator_;
