@@ -1,9 +1,12 @@
 """What cannot be used is refused in one line that names file or topic, type, field and the fix; single objects are dropped,
 counted and said."""
+import io
 import math
 import unittest
 
 import definitions
+import genpy
+import rosbag
 import std_msgs.msg
 from relay_case import RelayCase
 from samples import samples, set_header, set_xyz
@@ -80,6 +83,27 @@ class DroppedObjectsTest(RelayCase):
         said = self.refused(self.bag_of([message]))
         self.assertIn("1 messages dropped: no frame_id", said)
         self.assertEqual(self.relay(self.bag_of([message]), "--source-frame", "lidar")[0], 0)
+
+    def test_bytes_that_do_not_fit_the_definition(self):
+        good = boxes(None)
+        buffer = io.BytesIO()
+        good.serialize(buffer)
+        with rosbag.Bag(self.path("in.bag"), "w") as bag:
+            for data in (buffer.getvalue(), buffer.getvalue()[:-7], b"", b"\xff" * 200):
+                bag.write("/detections", (JSK, data, good._md5sum, type(good)), genpy.Time(1), raw=True)
+        code, said = self.relay(self.path("in.bag"))
+        self.assertEqual(code, 0, said)
+        self.assertEqual([len(m.objects) for m, _ in self.messages(self.path("out.bag"), "/objects")], [1])
+        counts = [int(line.split()[1]) for line in said.splitlines() if "the bytes do not fit the definition" in line]
+        self.assertEqual(sum(counts), 3, said)
+
+    def test_array_of_objects_that_is_not_there(self):
+        message = samples()["vision_msgs_noetic"].message
+        message.detections = []
+        mapping = self.write("mine.yaml", "type: vision_msgs/Detection3DArray\nobjects: detections[0].results\nclass: id\n"
+                                          "position: pose.pose.position")
+        self.assertIn("1 messages dropped: field 'detections' is empty", self.refused(self.bag_of([message]), "--mapping",
+                                                                                     mapping))
 
     def test_labels_that_are_to_be_left_out_are_counted_but_no_problem(self):
         code, said = self.relay(self.bag_of([boxes(None)]), "--classes", "{5: null}")

@@ -96,6 +96,8 @@ class ObjectRelayTest(unittest.TestCase):
         name = "of_text/object_relay: /text"
         self.wait_for(lambda: name in self.statuses and self.statuses[name].level == DiagnosticStatus.ERROR, "a status")
         self.assertIn(problem, self.statuses[name].message)
+        counts = {item.key: item.value for item in self.statuses[name].values}
+        self.assertEqual(counts["messages of a type that cannot be relayed"], "1")
 
     def test_boxes_in_a_world_frame_come_in_the_frame_of_the_robot(self):
         publisher = rospy.Publisher("/boxes_in_world", self.detector.message_class, queue_size=10)

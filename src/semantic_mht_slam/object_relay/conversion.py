@@ -6,6 +6,7 @@ from semantic_mht_slam.msg import SemanticObject, SemanticObjectArray
 from . import field_path, geometry
 from .class_labels import ClassLabels, IgnoredLabel, UnknownLabel
 from .errors import RelayError
+from .message_types import UnfitMessage
 from .object_reader import ObjectReader, is_finite
 
 _MOST_CAUSES = 200  # texts hold what others send: bounded memory
@@ -42,6 +43,7 @@ class Converter:
     def __init__(self, mapping, table, message_type, topic, *, renamed=None, only_class="", source_frame="",
                  to_target=None):
         where = f"{topic} ({message_type.name}), mapping '{mapping.name}'"
+        self._type = message_type
         self._labels = ClassLabels(table, mapping.classes, renamed or {}, topic)
         self._table = table
         self._source_frame = source_frame.lstrip("/")
@@ -69,11 +71,21 @@ class Converter:
             groups.append((path, ObjectReader(mapping, message_type, path.field_type.base, where), label))
         return groups
 
-    def convert(self, message, received):
-        """The objects of a message; None if it cannot be used at all, which is counted.
+    def convert(self, data, received):
+        """The objects of a serialized message; None if it cannot be used at all, which is counted.
 
         received: when the message arrived, the stamp of messages that have none.
         """
+        try:
+            return self._objects_of(self._type.parse(data), received)
+        except UnfitMessage as problem:
+            self.counts.add(f"messages dropped: the bytes do not fit the definition that came with them ({problem}); rebuild"
+                            " publisher and recorder with one version of the message")
+        except field_path.MissingValue as missing:
+            self.counts.add(f"messages dropped: field '{missing}' is empty")
+        return None
+
+    def _objects_of(self, message, received):
         found = []
         for path, reader, label in self._groups:
             for entry in path.read(message):

@@ -73,6 +73,10 @@ class MapExporter:
             objects.append(entry)
         return message
 
+    def objects_of(self, message):
+        """The entries of a message that was written."""
+        return self._objects.read(message)
+
     def _label(self, labels, table, class_id):
         if table.id_of(class_id) is None:
             raise RelayError(f"{self._where}: the map has a landmark of class {class_id}, which its class table lacks"

@@ -12,6 +12,10 @@ INTEGERS = {"bool", "byte", "char"} | {f"{sign}int{bits}" for sign in ("", "u") 
 NUMBERS = INTEGERS | {"float32", "float64"}
 
 
+class UnfitMessage(Exception):
+    """Bytes that are no message of a type."""
+
+
 class FieldType:
     """The type of a field: its name, whether it is an array, and the fixed length of the array or None."""
 
@@ -48,13 +52,12 @@ class MessageType:
         """An empty message of a type that occurs in this one."""
         return self._classes[type_name]()
 
-    def parse(self, data, where):
-        """The message of its serialized bytes; RelayError where they do not fit the definition."""
+    def parse(self, data):
+        """The message of its serialized bytes."""
         try:
             return self.root().deserialize(data)
-        except Exception as error:  # struct.error, UnicodeDecodeError and others, by what is broken
-            raise RelayError(f"{where}: a message does not fit the definition of {self.name} that came with it: {error}"
-                             " (rebuild publisher and recorder with one version of the message)") from error
+        except Exception as error:  # by what is broken: genpy's, struct's, of decoding, of memory
+            raise UnfitMessage(type(error).__name__) from error
 
 
 def message_type(name, definition, md5sum, where):

@@ -6,7 +6,7 @@ import rosbag
 
 from .errors import RelayError
 from .mapping import presets
-from .message_types import message_type
+from .message_types import UnfitMessage, message_type
 from . import transforms
 
 MAP_TYPE = "semantic_mht_slam/SemanticMap"
@@ -86,16 +86,21 @@ class BagRelay:
     def _relay(self, made, data, stamp, header):
         self._counts["messages"] += 1
         kind, converter = self._converter_of(header)
-        message = kind.parse(data, f"{self._path}, {self._topic_in}")
         if self._exporter:
-            written = self._exporter.write(message)
-            self._counts["objects"] += len(message.landmarks)
+            written = self._exporter.write(self._map_of(kind, data))
+            self._counts["objects"] += len(self._exporter.objects_of(written))
         else:
-            written = converter.convert(message, stamp)
+            written = converter.convert(data, stamp)
             self._counts["objects"] += len(written.objects) if written else 0
         if written:
             self._counts["written"] += 1
             made.write(self._topic_out, written, stamp)
+
+    def _map_of(self, kind, data):
+        try:
+            return kind.parse(data)
+        except UnfitMessage as problem:
+            raise RelayError(f"{self._path}, {self._topic_in}: a map is broken ({problem})") from problem
 
     def _converter_of(self, header):
         """(MessageType, Converter or None) of a connection."""

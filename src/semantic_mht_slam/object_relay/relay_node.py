@@ -57,9 +57,10 @@ class RelayNode:
         self._options, wait_s = options_of_parameters()
         self._options.check()
         self._lock = threading.Lock()
-        self._converters = {}  # (type, md5sum) -> (MessageType, Converter), or the RelayError that came of it
+        self._converters = {}  # (type, md5sum) -> Converter, or the RelayError that came of it
         self._warnings = ThrottledWarnings()
         self._messages = self._published = self._objects = 0
+        self._unreadable = 0  # messages of a type that cannot be relayed
         self._drops_told = 0
         self._to_target = self._listener = None
         if self._options.target_frame:
@@ -81,9 +82,10 @@ class RelayNode:
         with self._lock:
             self._messages += 1
             try:
-                kind, converter = self._converter_of(message._connection_header)
-                array = converter.convert(kind.parse(message._buff, self._topic), received)
+                converter = self._converter_of(message._connection_header)
+                array = converter.convert(message._buff, received)
             except RelayError as error:
+                self._unreadable += 1
                 self._warnings.warn(str(error), rospy.logerr)
                 return
             for line in converter.counts.lines(self._topic):
@@ -99,7 +101,7 @@ class RelayNode:
         if key not in self._converters:
             try:
                 kind = message_type(header["type"], header.get("message_definition", ""), header["md5sum"], self._topic)
-                self._converters[key] = (kind, self._options.converter(kind, self._topic, self._to_target))
+                self._converters[key] = self._options.converter(kind, self._topic, self._to_target)
             except RelayError as error:
                 self._converters[key] = error
         found = self._converters[key]
@@ -127,10 +129,11 @@ class RelayNode:
     def _status(self):
         with self._lock:
             errors = [str(found) for found in self._converters.values() if isinstance(found, RelayError)]
-            converters = [found[1] for found in self._converters.values() if not isinstance(found, RelayError)]
+            converters = [found for found in self._converters.values() if not isinstance(found, RelayError)]
             drops = {cause: count for c in converters for cause, count in c.counts.by_cause.items()}
             quiet = {cause: count for c in converters for cause, count in c.counts.quiet.items()}
-            values = {"messages": self._messages, "messages published": self._published, "objects": self._objects}
+            values = {"messages": self._messages, "messages published": self._published, "objects": self._objects,
+                      "messages of a type that cannot be relayed": self._unreadable}
         status = DiagnosticStatus(name=f"{rospy.get_name().lstrip('/')}: {self._topic}", hardware_id="none",
                                   level=DiagnosticStatus.OK, message="relaying")
         dropped = sum(drops.values())
