@@ -6,22 +6,19 @@
 namespace semantic_mht_slam {
 namespace {
 
-std::vector<LoopClosureResult> loopClosures(const BackEnd& back_end) {
-  const std::vector<MapKeyframe>& keyframes = back_end.keyframes().keyframes;
+std::vector<LoopClosureResult> loopClosures(const Map& map) {
   std::vector<LoopClosureResult> result;
-  for (const LoopClosureRecord& record : back_end.closures()) {
-    result.push_back({keyframes[static_cast<std::size_t>(record.query_keyframe)].frame,
-                      keyframes[static_cast<std::size_t>(record.match_keyframe)].frame, record});
+  for (const LoopClosureRecord& record : map.closures()) {
+    result.push_back(
+        {map.keyframes()[record.query_keyframe].frame, map.keyframes()[record.match_keyframe].frame, record});
   }
   return result;
 }
 
-std::vector<SubmapResult> submapResults(const BackEnd& back_end) {
-  const std::vector<MapKeyframe>& keyframes = back_end.keyframes().keyframes;
+std::vector<SubmapResult> submapResults(const Map& map, const LoopCloser& closer) {
   std::vector<SubmapResult> results;
-  for (const SubmapCheck& check : back_end.checks()) {
-    const auto first = static_cast<std::size_t>(check.first_keyframe);
-    if (first < keyframes.size()) results.push_back({keyframes[first].frame, check});
+  for (const SubmapId submap : map.submaps().ids()) {
+    results.push_back({map.keyframes()[map.keyframesOf(submap).front()].frame, closer.checks()[submap]});
   }
   return results;
 }
@@ -32,8 +29,8 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
                      const ProgressCallback& progress, const SlamState* start) {
   RunResult result;
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
-  const std::size_t known = slam.trajectory().size();
-  const std::optional<StampedPose> last = slam.latestOdometry();
+  const std::size_t known = trajectoryOf(slam).size();
+  const std::optional<StampedPose> last = slam.parts().sessions.latestOdometry();
   const bool is_another_drive =
       start != nullptr && last && !recording.odometry.empty() && !goesOn(*last, recording.odometry.front());
   if (is_another_drive) slam.beginSession();
@@ -41,31 +38,31 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   auto frame = recording.detector_frames.begin();
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {
     const Stopwatch step_watch;
-    const double mapping_before_s = slam.mappingSeconds();
+    const double mapping_before_s = slam.parts().mapping_s;
     const bool is_used = slam.addOdometry(recording.odometry[i]);
     while (frame != recording.detector_frames.end() && frame->stamp <= recording.odometry[i].stamp) {
       slam.addDetections(frame->stamp, frame->detections);
       ++frame;
     }
     result.step_ms.push_back(step_watch.elapsed_ms());
-    result.mapping_ms.push_back(1e3 * (slam.mappingSeconds() - mapping_before_s));
-    if (is_used) result.online_trajectory.push_back(*slam.latestPose());
-    result.hypotheses.push_back(static_cast<int>(slam.hypotheses().size()));
+    result.mapping_ms.push_back(1e3 * (slam.parts().mapping_s - mapping_before_s));
+    if (is_used) result.online_trajectory.push_back(*latestPoseOf(slam));
+    result.hypotheses.push_back(static_cast<int>(hypothesesOf(slam).size()));
     progress(i + 1, recording.odometry.size());
   }
   for (; frame != recording.detector_frames.end(); ++frame) slam.addDetections(frame->stamp, frame->detections);
   slam.finish();
   result.seconds = watch.elapsed_s();
-  result.whole_trajectory = slam.trajectory();
+  result.whole_trajectory = trajectoryOf(slam);
   result.trajectory.assign(result.whole_trajectory.begin() + static_cast<std::ptrdiff_t>(known),
                            result.whole_trajectory.end());
   result.state = slam.snapshot();
-  result.counters = slam.counters();
-  result.landmarks = slam.landmarks();
-  if (slam.backEnd() != nullptr) {
-    result.loop_closures = loopClosures(*slam.backEnd());
-    result.submap_checks = submapResults(*slam.backEnd());
-  }
+  result.counters = slam.parts().assembler.counters();
+  result.landmarks = landmarksOf(slam);
+  result.loop_closures = loopClosures(slam.map());
+  if (slam.parts().closer) result.submap_checks = submapResults(slam.map(), *slam.parts().closer);
+  result.identity = slam.map().identity().ledger();
+  result.graph = slam.parts().graph.status();
   result.associations = slam.map().associations();
   result.submaps = slam.map().submaps().size();
   if (result.trajectory.empty()) throw InputError("no odometry sample could be used");

@@ -198,6 +198,7 @@ void writeReport(const std::string& folder, const RunResult& result, const std::
                  {"submaps", result.submaps},
                  {"place", summarizeChecks(result.submap_checks)},
                  {"loop_closures", acceptedClosures(result.loop_closures)},
+                 {"graph", {{"failures", result.graph.failures}, {"newest_failure", result.graph.newest_failure}}},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};
   if (error) report["error"] = toJson(*error);

@@ -20,12 +20,12 @@ BatchProblem<kDim>::BatchProblem(const Graph& graph, const std::vector<bool>& us
     : blocks_(graph.poses.size() * kBatchPoseBlock<kDim>),
       points_(graph.points.size() * kDim),
       problem_(problemOptions()) {
-  for (int i = 0; i < static_cast<int>(graph.poses.size()); ++i) {
+  for (int i = 0; i < graph.poseCount(); ++i) {
     writeBlock(graph.poses[i].T_world_vertex, poseBlock(i));
     problem_.AddParameterBlock(poseBlock(i), kBatchPoseBlock<kDim>);
     if (kDim == 3) setManifold(problem_, poseBlock(i), &manifold_);
   }
-  for (int i = 0; i < static_cast<int>(graph.points.size()); ++i) {
+  for (int i = 0; i < graph.pointCount(); ++i) {
     std::copy_n(graph.points[i].position_m.data(), kDim, pointBlock(i));
     problem_.AddParameterBlock(pointBlock(i), kDim);
   }

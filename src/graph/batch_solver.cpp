@@ -174,9 +174,9 @@ std::string solveAll(BatchGraph<kDim>& graph, const BatchOptions& options, Batch
   if (!failure.empty()) return failure;
   report.final_cost = cost(graph);
   report.accepted_cost = costOf(graph, use_edge);
-  for (std::size_t i = 0; i < use_edge.size(); ++i) {
+  for (int i = 0; i < graph.edgeCount(); ++i) {
     if (use_edge[i]) continue;
-    report.rejected_loops.push_back({static_cast<int>(i), mahalanobisSq(graph, graph.pose_edges[i])});
+    report.rejected_loops.push_back({i, mahalanobisSq(graph, graph.pose_edges[i])});
   }
   return {};
 }

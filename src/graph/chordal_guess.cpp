@@ -57,10 +57,11 @@ class RelaxedProblem {
   using Block = Eigen::Matrix<double, kBlock, kBlock>;
   using Values = Eigen::Matrix<double, Eigen::Dynamic, kBlock>;  // one column a right-hand side
 
-  RelaxedProblem(std::size_t vertices, int held, int right_hand_sides)
-      : held_(held),
+  RelaxedProblem(int vertices, int held, int right_hand_sides)
+      : vertices_(vertices),
+        held_(held),
         weights_(vertices, 0.0),
-        rhs_(Eigen::MatrixXd::Zero(kBlock * (static_cast<Eigen::Index>(vertices) - 1), right_hand_sides)) {}
+        rhs_(Eigen::MatrixXd::Zero(kBlock * (vertices - 1), right_hand_sides)) {}
 
   /// Adds w | x_to - M^T x_from - offset |^2.
   void add(int from, int to, double weight, const Block& matrix, const Eigen::MatrixXd& offset,
@@ -81,7 +82,7 @@ class RelaxedProblem {
   }
 
   std::optional<Eigen::MatrixXd> solve() {
-    for (int vertex = 0; vertex < static_cast<int>(weights_.size()); ++vertex) {
+    for (int vertex = 0; vertex < vertices_; ++vertex) {
       if (vertex != held_) addDiagonal(row(vertex), weights_[vertex]);
     }
     Sparse matrix(rhs_.rows(), rhs_.rows());
@@ -113,6 +114,7 @@ class RelaxedProblem {
     for (int i = 0; i < kBlock; ++i) entries_.emplace_back(first + i, first + i, weight);
   }
 
+  int vertices_;
   int held_;
   std::vector<double> weights_;
   std::vector<Eigen::Triplet<double>> entries_;
@@ -125,7 +127,7 @@ std::optional<std::vector<Eigen::Matrix<double, kDim, kDim>>> relaxedRotations(c
   const int held = heldPose(graph);
   const Matrix held_rotation = rotationMatrix(graph.poses[held].T_world_vertex);
   // Unknown per pose: R^T. Row k of R_to = R_from R_ij is a column of R_to^T = R_ij^T R_from^T.
-  RelaxedProblem<kDim> problem(graph.poses.size(), held, kDim);
+  RelaxedProblem<kDim> problem(graph.poseCount(), held, kDim);
   const Eigen::MatrixXd held_value = held_rotation.transpose();
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(kDim, kDim);
   for (const auto& edge : graph.pose_edges) {
@@ -136,7 +138,7 @@ std::optional<std::vector<Eigen::Matrix<double, kDim, kDim>>> relaxedRotations(c
   const auto solution = problem.solve();
   if (!solution) return std::nullopt;
   std::vector<Matrix> rotations(graph.poses.size(), held_rotation);
-  for (int i = 0; i < static_cast<int>(rotations.size()); ++i) {
+  for (int i = 0; i < graph.poseCount(); ++i) {
     if (i == held) continue;
     const Matrix relaxed = solution->template middleRows<kDim>(problem.row(i));
     rotations[i] = nearestRotation<kDim>(relaxed.transpose());
@@ -152,7 +154,7 @@ std::optional<std::vector<typename BatchGraph<kDim>::PoseType>> chordalGuess(con
   const auto rotations = relaxedRotations(graph);
   if (!rotations) return std::nullopt;
   const int held = heldPose(graph);
-  RelaxedProblem<1> problem(graph.poses.size(), held, kDim);
+  RelaxedProblem<1> problem(graph.poseCount(), held, kDim);
   const Eigen::MatrixXd held_value = graph.poses[held].T_world_vertex.translation_m.transpose();
   const Eigen::Matrix<double, 1, 1> one(1.0);
   for (const auto& edge : graph.pose_edges) {
@@ -164,7 +166,7 @@ std::optional<std::vector<typename BatchGraph<kDim>::PoseType>> chordalGuess(con
   if (!translations) return std::nullopt;
   std::vector<PoseType> poses;
   poses.reserve(graph.poses.size());
-  for (int i = 0; i < static_cast<int>(graph.poses.size()); ++i) {
+  for (int i = 0; i < graph.poseCount(); ++i) {
     if (i == held) {
       poses.push_back(graph.poses[held].T_world_vertex);
     } else {

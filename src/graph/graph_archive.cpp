@@ -42,7 +42,7 @@ void requireIndex(int index, std::size_t size) {
 }  // namespace
 
 void transfer(StateArchive& archive, SightingFactor& sighting) {
-  archive(sighting.submap);
+  archive(sighting.node, sighting.landmark);
   transferCost(archive, sighting.cost);
 }
 
@@ -51,13 +51,13 @@ void transfer(StateArchive& archive, LandmarkState& landmark) {
 }
 
 void transfer(StateArchive& archive, PriorFactor& prior) {
-  archive(prior.T_world_submap, prior.cov);
+  archive(prior.T_world_node, prior.cov);
   transferCost(archive, prior.cost);
 }
 
 /// Without the cost of odometry, which `PoseGraph` makes again.
-void transfer(StateArchive& archive, SubmapState& submap) {
-  archive(submap.block, submap.landmarks, submap.loops, submap.priors);
+void transfer(StateArchive& archive, NodeState& node) {
+  archive(node.block, node.landmarks, node.loops, node.priors);
 }
 
 void transfer(StateArchive& archive, LoopState3& loop) {
@@ -67,20 +67,20 @@ void transfer(StateArchive& archive, LoopState3& loop) {
 }
 
 void GraphState::transfer(StateArchive& archive) {
-  archive(submaps, landmarks, merged_landmarks, loops);
+  archive(nodes, landmarks, group_of, loops);
   for (const auto& [number, landmark] : landmarks) {
-    requireIndex(landmark.anchor, submaps.size());
-    for (const SightingFactor& sighting : landmark.sightings) requireIndex(sighting.submap, submaps.size());
+    requireIndex(landmark.anchor, nodes.size());
+    for (const SightingFactor& sighting : landmark.sightings) requireIndex(sighting.node, nodes.size());
   }
   priors = 0;
-  for (const SubmapState& submap : submaps) {
-    priors += submap.priors.size();
-    for (const std::int64_t number : submap.landmarks) requireIndex(0, landmarks.count(number));
-    for (const int loop : submap.loops) requireIndex(loop, loops.size());
+  for (const NodeState& node : nodes) {
+    priors += node.priors.size();
+    for (const std::int64_t number : node.landmarks) requireIndex(0, landmarks.count(number));
+    for (const int loop : node.loops) requireIndex(loop, loops.size());
   }
   for (const LoopState3& loop : loops) {
-    requireIndex(loop.constraint.from, submaps.size());
-    requireIndex(loop.constraint.to, submaps.size());
+    requireIndex(loop.constraint.from, nodes.size());
+    requireIndex(loop.constraint.to, nodes.size());
   }
 }
 
@@ -98,21 +98,21 @@ void LoopReview::transfer(StateArchive& archive, const GraphState& graph) {
 
 void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::vector<OdometryStep>& odometry,
                    GraphState& graph, LoopReview& review) {
-  int window_submaps = config.window_submaps;
-  int chunk_submaps = config.chunk_submaps;
-  archive(window_submaps, chunk_submaps);
-  if (window_submaps != config.window_submaps || chunk_submaps != config.chunk_submaps) {
-    throw InputError("made with graph.window_submaps " + std::to_string(window_submaps) + " and graph.chunk_submaps " +
-                     std::to_string(chunk_submaps) + ", other ones than now");
+  int window_nodes = config.window_nodes;
+  int chunk_nodes = config.chunk_nodes;
+  archive(window_nodes, chunk_nodes);
+  if (window_nodes != config.window_nodes || chunk_nodes != config.chunk_nodes) {
+    throw InputError("made with graph.window_nodes " + std::to_string(window_nodes) + " and graph.chunk_nodes " +
+                     std::to_string(chunk_nodes) + ", other ones than now");
   }
   archive(odometry, graph);
-  if (odometry.size() != graph.submaps.size()) StateArchive::fail("a graph with more submaps than odometry");
+  if (odometry.size() != graph.nodes.size()) StateArchive::fail("a graph with more nodes than odometry");
   if (archive.isReading()) {
     for (std::size_t i = 0; i < odometry.size(); ++i) {
-      const auto& [T_previous_submap, cov] = odometry[i];
-      review.extendOdometry(T_previous_submap, cov, i == 0);
+      const auto& [T_previous_node, cov] = odometry[i];
+      review.extendOdometry(T_previous_node, cov, i == 0);
       if (i == 0) continue;
-      graph.submaps[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_submap, cov.inverse());
+      graph.nodes[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_node, cov.inverse());
     }
   }
   review.transfer(archive, graph);
@@ -146,17 +146,17 @@ std::vector<int> Skeleton::activeLinks() const {
 
 void Skeleton::transfer(StateArchive& archive) {
   std::vector<int> active = activeLinks();
-  std::vector<std::array<double, kPoseBlock>> nodes(blocks_.begin(), blocks_.end());
-  archive(nodes, links_, active);
+  std::vector<std::array<double, kPoseBlock>> hubs(blocks_.begin(), blocks_.end());
+  archive(hubs, links_, active);
   if (!archive.isReading()) return;
-  for (const auto& block : nodes) {
+  for (const auto& block : hubs) {
     Pose pose;
     readBlock(block.data(), pose);
-    addNode(pose);
+    addHub(pose);
   }
   for (const Link& link : links_) {
-    if (link.from != kWorld) requireIndex(link.from, nodes.size());
-    requireIndex(link.to, nodes.size());
+    if (link.from != kWorld) requireIndex(link.from, hubs.size());
+    requireIndex(link.to, hubs.size());
   }
   for (const int link : active) {
     requireIndex(link, links_.size());

@@ -11,10 +11,10 @@ namespace semantic_mht_slam {
 
 /// Odometry as it was added, to begin the sums over it again.
 struct OdometryStep {
-  Pose T_previous_submap;
+  Pose T_previous_node;
   PoseCov cov;
 
-  void transfer(StateArchive& archive) { archive(T_previous_submap, cov); }
+  void transfer(StateArchive& archive) { archive(T_previous_node, cov); }
 };
 
 /// Everything that was added to a graph, with the estimate and what was decided of loop closures. Throws InputError if

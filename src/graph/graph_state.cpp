@@ -3,20 +3,53 @@
 #include <algorithm>
 #include <iterator>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace semantic_mht_slam {
 
-std::int64_t GraphState::keptNumber(std::int64_t landmark) const {
-  for (auto found = merged_landmarks.find(landmark); found != merged_landmarks.end();
-       found = merged_landmarks.find(landmark)) {
-    landmark = found->second;
+namespace {
+
+/// A landmark that is being taken apart.
+struct OldLandmark {
+  int anchor = 0;
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of the anchor
+  std::set<std::int64_t> numbers;                        ///< of its sightings
+};
+
+/// Where the nodes of some sightings, as they stand, put a landmark in the world.
+Eigen::Vector3d meanOf(const std::vector<SightingFactor>& sightings, const std::deque<NodeState>& nodes) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  for (const SightingFactor& sighting : sightings) {
+    const Pose T_world_node = nodes[sighting.node].pose();
+    const Eigen::Matrix3d root = sighting.cost->squareRoot() * T_world_node.rotation.conjugate().toRotationMatrix();
+    const Eigen::Matrix3d in_world = root.transpose() * root;
+    information += in_world;
+    weighted += in_world * (T_world_node * sighting.cost->measured());
   }
-  return landmark;
+  return information.ldlt().solve(weighted);
+}
+
+/// The landmark seen first of those that come into a group as a whole; null if there is none.
+const OldLandmark* firstWhole(const std::vector<OldLandmark>& old, const std::vector<std::int64_t>& group) {
+  const OldLandmark* first = nullptr;
+  for (const OldLandmark& landmark : old) {
+    const bool is_whole = std::includes(group.begin(), group.end(), landmark.numbers.begin(), landmark.numbers.end());
+    if (is_whole && (first == nullptr || landmark.anchor < first->anchor)) first = &landmark;
+  }
+  return first;
+}
+
+}  // namespace
+
+std::int64_t GraphState::keptNumber(std::int64_t landmark) const {
+  const auto found = group_of.find(landmark);
+  return found == group_of.end() ? landmark : found->second;
 }
 
 void GraphState::addSighting(const LandmarkSighting& sighting) {
-  const int newest = static_cast<int>(submaps.size()) - 1;
+  const int newest = nodeCount() - 1;
   const std::int64_t number = keptNumber(sighting.landmark);
   const auto [entry, is_new] = landmarks.try_emplace(number);
   LandmarkState& landmark = entry->second;
@@ -24,34 +57,56 @@ void GraphState::addSighting(const LandmarkSighting& sighting) {
     landmark.anchor = newest;
     landmark.position_m = sighting.position_m;
   }
-  if (is_new || landmark.sightings.back().submap != newest) submaps[newest].landmarks.push_back(number);
+  if (is_new || landmark.sightings.back().node != newest) nodes[newest].landmarks.push_back(number);
   landmark.sightings.push_back(
-      {newest, std::make_unique<PointCost<3>>(sighting.position_m, sighting.cov_m2.inverse())});
+      {newest, sighting.landmark, std::make_unique<PointCost<3>>(sighting.position_m, sighting.cov_m2.inverse())});
 }
 
-std::vector<int> GraphState::mergeLandmarks(std::int64_t merged, std::int64_t survivor) {
-  LandmarkState& kept = landmarks.at(survivor);
-  LandmarkState& given_up = landmarks.at(merged);
-  for (const SightingFactor& sighting : given_up.sightings) {
-    auto& numbers = submaps[sighting.submap].landmarks;
-    numbers.erase(std::remove(numbers.begin(), numbers.end(), merged), numbers.end());
-    if (std::find(numbers.begin(), numbers.end(), survivor) == numbers.end()) numbers.push_back(survivor);
+std::set<int> GraphState::regroup(const std::vector<std::vector<std::int64_t>>& groups) {
+  std::map<std::int64_t, std::vector<SightingFactor>> sightings_of;
+  std::map<std::int64_t, std::vector<OldLandmark>> old_of;  // by each number
+  for (const auto& group : groups) {
+    for (const std::int64_t number : group) {
+      const auto found = landmarks.find(keptNumber(number));
+      if (found == landmarks.end()) continue;
+      OldLandmark old{found->second.anchor, found->second.position_m, {}};
+      for (SightingFactor& sighting : found->second.sightings) {
+        auto& numbers = nodes[sighting.node].landmarks;
+        numbers.erase(std::remove(numbers.begin(), numbers.end(), found->first), numbers.end());
+        old.numbers.insert(sighting.landmark);
+        sightings_of[sighting.landmark].push_back(std::move(sighting));
+      }
+      for (const std::int64_t own : old.numbers) old_of[own].push_back(old);
+      landmarks.erase(found);
+    }
   }
-  if (given_up.anchor < kept.anchor) {
-    kept.anchor = given_up.anchor;
-    kept.position_m = given_up.position_m;
-  }
-  std::vector<SightingFactor> sightings;
-  std::merge(std::make_move_iterator(kept.sightings.begin()), std::make_move_iterator(kept.sightings.end()),
-             std::make_move_iterator(given_up.sightings.begin()), std::make_move_iterator(given_up.sightings.end()),
-             std::back_inserter(sightings),
-             [](const SightingFactor& a, const SightingFactor& b) { return a.submap < b.submap; });
-  kept.sightings = std::move(sightings);
-  landmarks.erase(merged);
-  merged_landmarks.emplace(merged, survivor);
-  std::vector<int> seen_by;
-  for (const SightingFactor& sighting : kept.sightings) {
-    if (seen_by.empty() || seen_by.back() != sighting.submap) seen_by.push_back(sighting.submap);
+  std::set<int> seen_by;
+  for (const auto& group : groups) {
+    std::vector<SightingFactor> sightings;
+    std::vector<OldLandmark> old;
+    for (const std::int64_t number : group) {
+      group_of[number] = group.front();
+      auto& own = sightings_of[number];
+      std::move(own.begin(), own.end(), std::back_inserter(sightings));
+      old.insert(old.end(), old_of[number].begin(), old_of[number].end());
+    }
+    if (group.size() == 1) group_of.erase(group.front());
+    if (sightings.empty()) continue;
+    std::stable_sort(sightings.begin(), sightings.end(),
+                     [](const SightingFactor& a, const SightingFactor& b) { return a.node < b.node; });
+    for (const SightingFactor& sighting : sightings) {
+      auto& numbers = nodes[sighting.node].landmarks;
+      if (numbers.empty() || numbers.back() != group.front()) numbers.push_back(group.front());
+      seen_by.insert(sighting.node);
+    }
+    LandmarkState& landmark = landmarks[group.front()];
+    landmark.anchor = sightings.front().node;
+    const OldLandmark* whole = firstWhole(old, group);
+    const bool stays = whole != nullptr && whole->anchor == landmark.anchor;
+    const Eigen::Vector3d in_world_m =
+        whole != nullptr ? nodes[whole->anchor].pose() * whole->position_m : meanOf(sightings, nodes);
+    landmark.position_m = stays ? whole->position_m : nodes[landmark.anchor].pose().inverse() * in_world_m;
+    landmark.sightings = std::move(sightings);
   }
   return seen_by;
 }

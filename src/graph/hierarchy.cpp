@@ -9,33 +9,27 @@
 namespace semantic_mht_slam {
 namespace {
 
-// A solution takes time in proportion to the nodes and spreads what is new among them: it waits for as much.
-constexpr double kQuietGapPerNode = 0.24;
+// A solution takes time in proportion to the hubs and spreads what is new among them: it waits for as much.
+constexpr double kQuietGapPerHub = 0.24;
 constexpr double kBendRadius_m = 10.0;  // a bend by 1 rad counts like 10 m
 constexpr double kWorthRepairing_m = 2e-3;
 constexpr double kSwitchOffFactor = 3.0;  // of the gate
-constexpr int kRepairMargin = 2;          // submaps on either side of a bent piece that are optimised with it
+constexpr int kRepairMargin = 2;          // nodes on either side of a bent piece that are optimised with it
 
-/// Relative pose between the frames of two nodes from one between submaps that hang on them; with the covariance of its
-/// error and of the odometry between submap and node.
+/// Relative pose between the frames of two hubs from one between nodes that hang on them; with the covariance of its
+/// error and of the odometry between node and hub.
 struct LiftedLink {
   Pose T_from_to;
   PoseCov cov;
 };
 
-LiftedLink lift(const LoopConstraint& loop, const Pose& T_node_from, const Pose& T_node_to, const PoseCov& from_cov,
+LiftedLink lift(const LoopConstraint& loop, const Pose& T_hub_from, const Pose& T_hub_to, const PoseCov& from_cov,
                 const PoseCov& to_cov) {
-  const Pose T_to_node = T_node_to.inverse();
-  const Matrix6d to_node = adjoint(T_node_to);
-  const Matrix6d from_node = adjoint((loop.T_from_to * T_to_node).inverse());
-  return {T_node_from * loop.T_from_to * T_to_node,
-          to_node * (loop.cov + to_cov) * to_node.transpose() + from_node * from_cov * from_node.transpose()};
-}
-
-std::vector<int> range(int first, int last) {
-  std::vector<int> numbers;
-  for (int i = first; i <= last; ++i) numbers.push_back(i);
-  return numbers;
+  const Pose T_to_hub = T_hub_to.inverse();
+  const Matrix6d to_hub = adjoint(T_hub_to);
+  const Matrix6d from_hub = adjoint((loop.T_from_to * T_to_hub).inverse());
+  return {T_hub_from * loop.T_from_to * T_to_hub,
+          to_hub * (loop.cov + to_cov) * to_hub.transpose() + from_hub * from_cov * from_hub.transpose()};
 }
 
 }  // namespace
@@ -49,82 +43,86 @@ PoseCov errorCov(const Pose& T_world_to, const Eigen::MatrixXd& step_cov) {
 
 Hierarchy::Hierarchy(const PoseGraphConfig& config) : config_(config), skeleton_(config.loop_cauchy_scale) {}
 
-int Hierarchy::nearestNode(int submap) const {
-  const int half = config_.chunk_submaps / 2;
-  return std::min(chunkOf(submap + half), skeleton_.nodes() - 1);
+int Hierarchy::nearestHub(int node) const {
+  const int half = config_.chunk_nodes / 2;
+  return std::min(chunkOf(node + half), skeleton_.hubs() - 1);
 }
 
 void Hierarchy::extend(GraphState& graph, const LoopReview& review, int newest) {
   prior_links_.push_back(0);
-  if (newest % config_.window_submaps == 0) bend_.push_back(0.0);
-  if (newest == firstOf(chunkOf(newest))) addNode(graph, review, newest);
+  if (newest % config_.window_nodes == 0) bend_.push_back(0.0);
+  if (newest == firstOf(chunkOf(newest))) addHub(graph, review, newest);
   addSharedLandmarks(graph, review, newest);
 }
 
-void Hierarchy::addNode(GraphState& graph, const LoopReview& review, int newest) {
-  const Pose T_world_new = graph.submaps[newest].pose();
-  const int node = skeleton_.addNode(T_world_new);
-  if (node == 0) return;
-  const int before = firstOf(node - 1);
-  const Pose T_before_new = graph.submaps[before].pose().inverse() * T_world_new;
-  Subgraph chunk(graph, range(before, newest), Surroundings::kIgnored, config_);
+void Hierarchy::addHub(GraphState& graph, const LoopReview& review, int newest) {
+  const Pose T_world_new = graph.nodes[newest].pose();
+  const int hub = skeleton_.addHub(T_world_new);
+  if (hub == 0) return;
+  const int before = firstOf(hub - 1);
+  const Pose T_before_new = graph.nodes[before].pose().inverse() * T_world_new;
+  Subgraph chunk(graph, range(before, newest + 1), Surroundings::kIgnored, config_);
   const auto step_cov = chunk.poseStepCovariance(newest);
   const PoseCov cov = step_cov ? errorCov(T_world_new, *step_cov) : review.odometryCov(before, newest);
-  skeleton_.setActive(skeleton_.addLink(node - 1, node, T_before_new, cov), true);
+  skeleton_.setActive(skeleton_.addLink(hub - 1, hub, T_before_new, cov), true);
 }
 
 std::optional<int> Hierarchy::addLiftedLink(const GraphState& graph, const LoopReview& review,
                                             const LoopConstraint& loop) {
-  const int from = nearestNode(loop.from);
-  const int to = nearestNode(loop.to);
+  const int from = nearestHub(loop.from);
+  const int to = nearestHub(loop.to);
   if (from == to) return std::nullopt;
-  const auto offset_in = [&](int node, int submap) {
-    return graph.submaps[firstOf(node)].pose().inverse() * graph.submaps[submap].pose();
+  const auto offset_in = [&](int hub, int node) {
+    return graph.nodes[firstOf(hub)].pose().inverse() * graph.nodes[node].pose();
   };
   const LiftedLink link = lift(loop, offset_in(from, loop.from), offset_in(to, loop.to),
                                review.odometryCov(firstOf(from), loop.from), review.odometryCov(firstOf(to), loop.to));
   return skeleton_.addLink(from, to, link.T_from_to, link.cov);
 }
 
-void Hierarchy::addSharedLandmarks(const GraphState& graph, const LoopReview& review, int submap) {
-  if (!graph.submaps[submap].loops.empty()) return;  // a loop closure says the same
-  const auto relation = relateThroughLandmarks(graph, submap, config_);
-  if (!relation || !review.fitsOdometry(graph, *relation)) return;
-  const std::optional<int> link = addLiftedLink(graph, review, *relation);
+void Hierarchy::addSharedLandmarks(const GraphState& graph, const LoopReview& review, int node) {
+  if (!graph.nodes[node].loops.empty()) return;  // a loop closure says the same
+  const auto relation = relateThroughLandmarks(graph, node, config_);
+  const bool is_related = relation && review.fitsOdometry(graph, *relation);
+  const std::optional<int> link = is_related ? addLiftedLink(graph, review, *relation) : std::nullopt;
+  const auto known = landmark_links_.find(node);
+  if (known != landmark_links_.end()) {
+    skeleton_.setActive(*known->second.link, false);
+    if (!link) news_ += quietGap();
+    landmark_links_.erase(known);
+  }
   if (!link) return;
   skeleton_.setActive(*link, true);
-  const auto [entry, is_new] = landmark_links_.try_emplace(submap);
-  if (!is_new) skeleton_.setActive(*entry->second.link, false);
-  entry->second = {link, false};
+  landmark_links_[node] = {link, false};
   news_ += skeleton_.mahalanobisSq(*link);
 }
 
 void Hierarchy::linkTouched(const GraphState& graph, const LoopReview& review) {
-  for (const int submap : touched_) addSharedLandmarks(graph, review, submap);
+  for (const int node : touched_) addSharedLandmarks(graph, review, node);
 }
 
 std::vector<int> Hierarchy::takeTouched(const GraphState& graph) {
-  const int newest = static_cast<int>(graph.submaps.size()) - 1;
-  std::set<int> submaps;
-  for (const int submap : touched_) {
-    for (int i = std::max(0, submap - kRepairMargin); i <= std::min(newest, submap + kRepairMargin); ++i) {
-      submaps.insert(i);
+  const int newest = graph.nodeCount() - 1;
+  std::set<int> nodes;
+  for (const int node : touched_) {
+    for (int i = std::max(0, node - kRepairMargin); i <= std::min(newest, node + kRepairMargin); ++i) {
+      nodes.insert(i);
     }
   }
   touched_.clear();
-  return {submaps.begin(), submaps.end()};
+  return {nodes.begin(), nodes.end()};
 }
 
 void Hierarchy::addPriors(GraphState& graph) {
   if (priors_in_ == graph.priors) return;
-  for (int submap = 0; submap < static_cast<int>(graph.submaps.size()); ++submap) {
-    const auto& priors = graph.submaps[submap].priors;
-    for (std::size_t& i = prior_links_[submap]; i < priors.size(); ++i) {
-      const int node = nearestNode(submap);
-      const Pose T_submap_node = graph.submaps[submap].pose().inverse() * graph.submaps[firstOf(node)].pose();
-      const Matrix6d to_node = adjoint(T_submap_node.inverse());
-      const int link = skeleton_.addLink(Skeleton::kWorld, node, priors[i].T_world_submap * T_submap_node,
-                                         to_node * priors[i].cov * to_node.transpose());
+  for (int node = 0; node < graph.nodeCount(); ++node) {
+    const auto& priors = graph.nodes[node].priors;
+    for (std::size_t& i = prior_links_[node]; i < priors.size(); ++i) {
+      const int hub = nearestHub(node);
+      const Pose T_node_hub = graph.nodes[node].pose().inverse() * graph.nodes[firstOf(hub)].pose();
+      const Matrix6d to_hub = adjoint(T_node_hub.inverse());
+      const int link = skeleton_.addLink(Skeleton::kWorld, hub, priors[i].T_world_node * T_node_hub,
+                                         to_hub * priors[i].cov * to_hub.transpose());
       skeleton_.setActive(link, true);
       is_pending_ = true;
       ++priors_in_;
@@ -138,17 +136,17 @@ double Hierarchy::gap(const GraphState& graph, int loop) const {
 }
 
 void Hierarchy::synchronize(const GraphState& graph) {
-  for (int node = 0; node < skeleton_.nodes(); ++node) skeleton_.setPose(node, graph.submaps[firstOf(node)].pose());
+  for (int hub = 0; hub < skeleton_.hubs(); ++hub) skeleton_.setPose(hub, graph.nodes[firstOf(hub)].pose());
 }
 
 double Hierarchy::quietGap() const {
-  return kQuietGapPerNode * skeleton_.nodes();
+  return kQuietGapPerHub * skeleton_.hubs();
 }
 
 bool Hierarchy::update(GraphState& graph, const LoopReview& review) {
   addPriors(graph);
   const int known = static_cast<int>(loop_links_.size());
-  for (int i = std::min(known, review.firstOpen(graph)); i < static_cast<int>(graph.loops.size()); ++i) {
+  for (int i = std::min(known, review.firstOpen(graph)); i < graph.loopCount(); ++i) {
     const bool is_new = i >= known;
     if (is_new) loop_links_.push_back({addLiftedLink(graph, review, graph.loops[i].constraint), false});
     const bool is_active = graph.loops[i].state == LoopState::kAccepted;
@@ -165,7 +163,7 @@ Skeleton::Outcome Hierarchy::solve(GraphState& graph, const LoopReview& review, 
   const Skeleton::Outcome outcome = skeleton_.optimize(config_.global_iterations, max_seconds);
   is_pending_ = outcome.failure.empty() && !outcome.converged;
   news_ = 0.0;
-  if (outcome.failure.empty()) moveSubmaps(graph, review);
+  if (outcome.failure.empty()) moveNodes(graph, review);
   return outcome;
 }
 
@@ -175,7 +173,7 @@ void Hierarchy::settle() {
     skeleton_.setRobust(*loop.link, true);
     loop.is_settled = true;
   }
-  for (auto& [submap, shared] : landmark_links_) {
+  for (auto& [node, shared] : landmark_links_) {
     if (shared.is_settled) continue;
     const double gap = skeleton_.mahalanobisSq(*shared.link);
     if (gap > kSwitchOffFactor * config_.loop_gate) skeleton_.setActive(*shared.link, false);
@@ -184,40 +182,39 @@ void Hierarchy::settle() {
   }
 }
 
-void Hierarchy::moveSubmaps(GraphState& graph, const LoopReview& review) {
-  std::vector<Pose> old_nodes;
-  for (int node = 0; node < skeleton_.nodes(); ++node) old_nodes.push_back(graph.submaps[firstOf(node)].pose());
-  for (int chunk = 0; chunk < skeleton_.nodes(); ++chunk) moveChunk(graph, review, chunk, old_nodes);
+void Hierarchy::moveNodes(GraphState& graph, const LoopReview& review) {
+  std::vector<Pose> old_hubs;
+  for (int hub = 0; hub < skeleton_.hubs(); ++hub) old_hubs.push_back(graph.nodes[firstOf(hub)].pose());
+  for (int chunk = 0; chunk < skeleton_.hubs(); ++chunk) moveChunk(graph, review, chunk, old_hubs);
 }
 
-/// Submaps between two nodes follow as odometry between the nodes lets them: of the step at which the node behind has
-/// come to stand otherwise, each takes the share that is expected of it. Those behind the last node follow it rigidly.
-void Hierarchy::moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_nodes) {
-  const Pose T_node_world_old = old_nodes[chunk].inverse();
-  const Pose T_world_node = skeleton_.pose(chunk);
+/// Nodes between two hubs follow as odometry between the hubs lets them: of the step at which the hub behind has
+/// come to stand otherwise, each takes the share that is expected of it. Those behind the last hub follow it rigidly.
+void Hierarchy::moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_hubs) {
+  const Pose T_hub_world_old = old_hubs[chunk].inverse();
+  const Pose T_world_hub = skeleton_.pose(chunk);
   const int first = firstOf(chunk);
-  const int next = std::min(firstOf(chunk + 1), static_cast<int>(graph.submaps.size()));
-  const auto move = [&](int submap, const Pose& step) {
-    writeBlock(T_world_node * step * T_node_world_old * graph.submaps[submap].pose(),
-               graph.submaps[submap].block.data());
+  const int next = std::min(firstOf(chunk + 1), graph.nodeCount());
+  const auto move = [&](int node, const Pose& step) {
+    writeBlock(T_world_hub * step * T_hub_world_old * graph.nodes[node].pose(), graph.nodes[node].block.data());
   };
-  if (chunk + 1 == skeleton_.nodes()) {
+  if (chunk + 1 == skeleton_.hubs()) {
     for (int i = first; i < next; ++i) move(i, Pose::identity());
     return;
   }
-  const Pose T_node_next_old = T_node_world_old * old_nodes[chunk + 1];
-  const Vector6d step = offset(T_world_node.inverse() * skeleton_.pose(chunk + 1) * T_node_next_old.inverse());
+  const Pose T_hub_next_old = T_hub_world_old * old_hubs[chunk + 1];
+  const Vector6d step = offset(T_world_hub.inverse() * skeleton_.pose(chunk + 1) * T_hub_next_old.inverse());
   const Vector6d pull = review.odometryStepCov(first, next).ldlt().solve(step);
   for (int i = first; i < next; ++i) {
     const Vector6d share = review.odometryStepCov(first, i) * pull;
     move(i, {expRotation(share.tail<3>()), share.head<3>()});
   }
-  addBend(first, next - 1, offset(T_node_next_old.inverse() * T_world_node.inverse() * skeleton_.pose(chunk + 1)));
+  addBend(first, next - 1, offset(T_hub_next_old.inverse() * T_world_hub.inverse() * skeleton_.pose(chunk + 1)));
 }
 
 void Hierarchy::addBend(int first, int last, const Vector6d& bend) {
-  const double share = static_cast<double>(config_.window_submaps) / config_.chunk_submaps;
-  for (int piece = first / config_.window_submaps; piece <= last / config_.window_submaps; ++piece) {
+  const double share = static_cast<double>(config_.window_nodes) / config_.chunk_nodes;
+  for (int piece = first / config_.window_nodes; piece <= last / config_.window_nodes; ++piece) {
     bend_[piece] += share * (bend.head<3>().norm() + kBendRadius_m * bend.tail<3>().norm());
   }
 }
@@ -226,10 +223,9 @@ std::vector<int> Hierarchy::takeBentPiece(const GraphState& graph) {
   const auto most = std::max_element(bend_.begin(), bend_.end());
   if (most == bend_.end() || *most < kWorthRepairing_m) return {};
   *most = 0.0;
-  const int first = static_cast<int>(most - bend_.begin()) * config_.window_submaps;
-  const int newest = static_cast<int>(graph.submaps.size()) - 1;
+  const int first = static_cast<int>(most - bend_.begin()) * config_.window_nodes;
   return range(std::max(0, first - kRepairMargin),
-               std::min(newest, first + config_.window_submaps - 1 + kRepairMargin));
+               std::min(graph.nodeCount(), first + config_.window_nodes + kRepairMargin));
 }
 
 void Hierarchy::finishWhole(const GraphState& graph) {

@@ -18,32 +18,32 @@ class StateArchive;
 /// end (rotation, translation in the world).
 PoseCov errorCov(const Pose& T_world_to, const Eigen::MatrixXd& step_cov);
 
-/// Keeps the skeleton of a graph: which submap belongs to which chunk, condensed links along the drive, links for loop
-/// closures, and carries what the skeleton finds back to the submaps.
+/// Keeps the skeleton of a graph: which node belongs to which chunk, condensed links along the drive, links for loop
+/// closures, and carries what the skeleton finds back to the nodes.
 class Hierarchy {
  public:
   explicit Hierarchy(const PoseGraphConfig& config);
 
-  /// A node for a new submap if it begins a chunk, a link if it saw old landmarks again; call for every submap once,
+  /// A hub for a new node if it begins a chunk, a link if it saw old landmarks again; call for every node once,
   /// after it was optimised with its neighbours.
-  void extend(GraphState& graph, const LoopReview& review, int submap);
+  void extend(GraphState& graph, const LoopReview& review, int node);
 
-  /// Landmarks were merged that these submaps saw.
-  void touch(const std::vector<int>& submaps) { touched_.insert(submaps.begin(), submaps.end()); }
+  /// Landmarks were merged or split that these nodes saw.
+  void touch(const std::set<int>& nodes) { touched_.insert(nodes.begin(), nodes.end()); }
 
-  /// Links for touched submaps to where their landmarks, as they are now, were seen first.
+  /// Links for touched nodes to where their landmarks, as they are now, were seen first.
   void linkTouched(const GraphState& graph, const LoopReview& review);
 
-  /// The touched submaps and a few around each, ascending; none is touched any more.
+  /// The touched nodes and a few around each, ascending; none is touched any more.
   std::vector<int> takeTouched(const GraphState& graph);
 
   /// Takes over the states of loop closures and adds new priors; true if the skeleton has to be solved for them.
   bool update(GraphState& graph, const LoopReview& review);
 
-  /// Puts the nodes where their submaps are.
+  /// Puts the hubs where their nodes are.
   void synchronize(const GraphState& graph);
 
-  /// Solves the skeleton and moves all submaps accordingly.
+  /// Solves the skeleton and moves all nodes accordingly.
   Skeleton::Outcome solve(GraphState& graph, const LoopReview& review, double max_seconds);
 
   /// Mahalanobis distance squared of a loop closure from the estimate of the skeleton, whose resolution its covariance
@@ -54,7 +54,7 @@ class Hierarchy {
   void settle();
 
   /// The piece of the drive, as long as the window, that was bent most since it was last optimised in full, as a list
-  /// of its submaps and a few around it; empty if all are as good as straight.
+  /// of its nodes and a few around it; empty if all are as good as straight.
   std::vector<int> takeBentPiece(const GraphState& graph);
 
   /// Everything was just optimised in full: nothing is left to repair or to bring in.
@@ -76,26 +76,26 @@ class Hierarchy {
     void transfer(StateArchive& archive);
   };
 
-  int chunkOf(int submap) const { return submap / config_.chunk_submaps; }
-  int firstOf(int chunk) const { return chunk * config_.chunk_submaps; }
-  int nearestNode(int submap) const;
+  int chunkOf(int node) const { return node / config_.chunk_nodes; }
+  int firstOf(int chunk) const { return chunk * config_.chunk_nodes; }
+  int nearestHub(int node) const;
   double quietGap() const;
-  void addNode(GraphState& graph, const LoopReview& review, int submap);
+  void addHub(GraphState& graph, const LoopReview& review, int node);
   std::optional<int> addLiftedLink(const GraphState& graph, const LoopReview& review, const LoopConstraint& loop);
-  void addSharedLandmarks(const GraphState& graph, const LoopReview& review, int submap);
+  void addSharedLandmarks(const GraphState& graph, const LoopReview& review, int node);
   void addPriors(GraphState& graph);
-  void moveSubmaps(GraphState& graph, const LoopReview& review);
-  void moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_nodes);
+  void moveNodes(GraphState& graph, const LoopReview& review);
+  void moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_hubs);
   void addBend(int first, int last, const Vector6d& bend);
 
   const PoseGraphConfig& config_;
   Skeleton skeleton_;
   std::vector<LoopLink> loop_links_;        ///< by loop closure
-  std::map<int, LoopLink> landmark_links_;  ///< through landmarks that were seen again, by the submap that saw them
-  std::set<int> touched_;                   ///< submaps that saw landmarks that were merged
-  std::vector<std::size_t> prior_links_;    ///< per submap: how many of its priors are in
+  std::map<int, LoopLink> landmark_links_;  ///< through landmarks that were seen again, by the node that saw them
+  std::set<int> touched_;                   ///< nodes that saw landmarks that were merged
+  std::vector<std::size_t> prior_links_;    ///< per node: how many of its priors are in
   std::size_t priors_in_ = 0;               ///< sum of `prior_links_`
-  std::vector<double> bend_;                ///< per piece of `window_submaps`, metres
+  std::vector<double> bend_;                ///< per piece of `window_nodes`, metres
   double news_ = 0.0;  ///< Mahalanobis distances squared that loop closures brought since the skeleton was solved
   bool is_pending_ = false;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -15,7 +16,7 @@ template <int kDim>
 std::vector<std::vector<std::pair<int, int>>> neighbours(const BatchGraph<kDim>& graph) {
   std::vector<std::vector<std::pair<int, int>>> result(graph.poses.size());
   for (const bool odometry : {true, false}) {
-    for (int i = 0; i < static_cast<int>(graph.pose_edges.size()); ++i) {
+    for (int i = 0; i < graph.edgeCount(); ++i) {
       const auto& edge = graph.pose_edges[i];
       if (isOdometry(edge) != odometry) continue;
       result[edge.from].emplace_back(edge.to, i);
@@ -58,8 +59,8 @@ std::optional<std::string> findBadNumber(const BatchGraph<kDim>& graph) {
 
 template <int kDim>
 std::optional<std::string> findBadIndex(const BatchGraph<kDim>& graph) {
-  const int poses = static_cast<int>(graph.poses.size());
-  const int points = static_cast<int>(graph.points.size());
+  const int poses = graph.poseCount();
+  const int points = graph.pointCount();
   if (poses == 0) return "the graph has no pose";
   const auto outside = [](int index, int size) { return index < 0 || index >= size; };
   for (const auto& edge : graph.pose_edges) {
@@ -84,12 +85,12 @@ int findRoot(std::vector<int>& parents, int node) {
 template <int kDim>
 std::optional<std::string> findDisconnection(const BatchGraph<kDim>& graph) {
   std::vector<int> parents(graph.poses.size());
-  for (std::size_t i = 0; i < parents.size(); ++i) parents[i] = static_cast<int>(i);
+  std::iota(parents.begin(), parents.end(), 0);
   for (const auto& edge : graph.pose_edges) parents[findRoot(parents, edge.from)] = findRoot(parents, edge.to);
   std::vector<bool> held(parents.size(), false);
   held[findRoot(parents, 0)] = graph.fixed_poses.empty();
   for (const int index : graph.fixed_poses) held[findRoot(parents, index)] = true;
-  for (int i = 0; i < static_cast<int>(parents.size()); ++i) {
+  for (int i = 0; i < graph.poseCount(); ++i) {
     if (!held[findRoot(parents, i)]) {
       return "pose " + std::to_string(graph.poses[i].id) + " is not connected to a held pose";
     }
@@ -115,7 +116,7 @@ template <int kDim>
 void fillMissingEstimates(BatchGraph<kDim>& graph) {
   const auto next_to = neighbours(graph);
   std::deque<int> queue;
-  for (int i = 0; i < static_cast<int>(graph.poses.size()); ++i) {
+  for (int i = 0; i < graph.poseCount(); ++i) {
     if (graph.poses[i].has_estimate) queue.push_back(i);
   }
   if (queue.empty()) {

@@ -47,7 +47,7 @@ LoopConsistency findConsistentLoops(const BatchGraph<kDim>& graph, double gate, 
   LoopConsistency result;
   std::vector<TestedLoop<kDim>> loops;
   std::vector<int> edges;
-  for (int i = 0; i < static_cast<int>(graph.pose_edges.size()); ++i) {
+  for (int i = 0; i < graph.edgeCount(); ++i) {
     const auto& edge = graph.pose_edges[i];
     if (isOdometry(edge)) continue;
     if (!odometry.joins(edge.from, edge.to)) {

@@ -15,20 +15,20 @@ constexpr long kCliqueSteps = 500;
 }  // namespace
 
 double mahalanobisSq(const GraphState& graph, const LoopConstraint& loop) {
-  const Vector6d error = edgeError(graph.submaps[loop.from].pose(), graph.submaps[loop.to].pose(), loop.T_from_to);
+  const Vector6d error = edgeError(graph.nodes[loop.from].pose(), graph.nodes[loop.to].pose(), loop.T_from_to);
   return error.dot(loop.cov.llt().solve(error));
 }
 
-void LoopReview::extendOdometry(const Pose& T_previous_submap, const PoseCov& cov, bool is_first) {
+void LoopReview::extendOdometry(const Pose& T_previous_node, const PoseCov& cov, bool is_first) {
   if (is_first) {
     odometry_.startSegment();
   } else {
-    odometry_.append(T_previous_submap, config_.odometry_cov_scale * cov);
+    odometry_.append(T_previous_node, config_.odometry_cov_scale * cov);
   }
 }
 
 UncertainLink<3> LoopReview::estimatedLink(const GraphState& graph, int from, int to) const {
-  return {graph.submaps[from].pose().inverse() * graph.submaps[to].pose(), odometry_.between(from, to).cov};
+  return {graph.nodes[from].pose().inverse() * graph.nodes[to].pose(), odometry_.between(from, to).cov};
 }
 
 bool LoopReview::fitsOdometry(const GraphState& graph, const LoopConstraint& constraint) const {
@@ -49,7 +49,7 @@ bool LoopReview::agree(const GraphState& graph, const TestedLoop<3>& a, const Te
 
 void LoopReview::add(const GraphState& graph, const LoopConstraint& constraint) {
   const TestedLoop<3> loop = makeTestedLoop<3>(constraint.from, constraint.to, constraint.T_from_to, constraint.cov);
-  const int count = static_cast<int>(loops_.size());
+  const int count = graph.loopCount() - 1;  // without this one
   std::vector<bool>& agrees = agrees_.emplace_back();
   for (int other = count - 1; other >= std::max(0, count - config_.compared_loops); --other) {
     agrees.push_back(agree(graph, loop, loops_[other]));
@@ -61,7 +61,7 @@ void LoopReview::add(const GraphState& graph, const LoopConstraint& constraint) 
 /// The newest loop closures that may agree with each other.
 std::vector<int> LoopReview::candidates(const GraphState& graph) const {
   std::vector<int> result;
-  const int count = static_cast<int>(graph.loops.size());
+  const int count = graph.loopCount();
   for (int i = firstOpen(graph); i < count; ++i) {
     const LoopState state = graph.loops[i].state;
     if (state == LoopState::kAccepted || state == LoopState::kInconsistent) result.push_back(i);
@@ -70,7 +70,7 @@ std::vector<int> LoopReview::candidates(const GraphState& graph) const {
 }
 
 void LoopReview::decide(GraphState& graph) {
-  const int count = static_cast<int>(graph.loops.size());
+  const int count = graph.loopCount();
   if (reviewed_ == count) return;
   for (; reviewed_ < count; ++reviewed_) {
     LoopState3& loop = graph.loops[reviewed_];
@@ -113,7 +113,7 @@ std::vector<bool> LoopReview::largestAgreement(const std::vector<int>& loops) co
 }
 
 void LoopReview::compareWithEstimate(GraphState& graph, const std::function<double(int)>& gap) const {
-  const int count = static_cast<int>(graph.loops.size());
+  const int count = graph.loopCount();
   for (int i = firstOpen(graph); i < count; ++i) {
     LoopState3& loop = graph.loops[i];
     if (!loop.is_reviewed) continue;

@@ -22,16 +22,14 @@ class LoopReview {
  public:
   explicit LoopReview(const PoseGraphConfig& config) : config_(config) {}
 
-  /// A submap was added.
-  void extendOdometry(const Pose& T_previous_submap, const PoseCov& cov, bool is_first);
+  /// A node was added.
+  void extendOdometry(const Pose& T_previous_node, const PoseCov& cov, bool is_first);
 
   /// A loop closure was added.
   void add(const GraphState& graph, const LoopConstraint& loop);
 
   /// The first loop closure whose state may still change.
-  int firstOpen(const GraphState& graph) const {
-    return std::max(0, static_cast<int>(graph.loops.size()) - config_.compared_loops);
-  }
+  int firstOpen(const GraphState& graph) const { return std::max(0, graph.loopCount() - config_.compared_loops); }
 
   /// Sets the states of the newest loop closures if there are new ones.
   void decide(GraphState& graph);
@@ -43,7 +41,7 @@ class LoopReview {
   /// True if a relative pose agrees with odometry.
   bool fitsOdometry(const GraphState& graph, const LoopConstraint& loop) const;
 
-  /// Covariance of odometry between two submaps, in `PoseCov` form.
+  /// Covariance of odometry between two nodes, in `PoseCov` form.
   PoseCov odometryCov(int from, int to) const;
 
   /// The same as a step at the beginning: T_from_to = Exp(step) * T_from_to as expected. Steps add up along odometry.

@@ -1,7 +1,6 @@
 #include "semantic_mht_slam/graph/pose_graph.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <Eigen/LU>
 
@@ -22,26 +21,21 @@ constexpr double kFullTolerance = 1e-6;  // of the cost; what is left of the pos
 constexpr int kRepairIterations = 1;     // an interpolated piece is so near its optimum that one step reaches it
 constexpr double kWindowShare = 0.5;     // of a time budget, so that loop closures get the rest
 
-std::vector<int> range(int first, int end) {
-  std::vector<int> numbers(end - first);
-  std::iota(numbers.begin(), numbers.end(), first);
-  return numbers;
-}
-
 }  // namespace
 
 class PoseGraph::Impl {
  public:
   explicit Impl(const PoseGraphConfig& config) : config_(config), review_(config_), hierarchy_(config_) {}
 
-  int addSubmap(const SubmapNode& node);
+  int addNode(const PoseNode& node);
   int addLoopClosure(const LoopConstraint& loop);
-  void addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov);
-  void mergeLandmarks(std::int64_t merged, std::int64_t survivor);
+  void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
+  void regroup(std::vector<std::vector<std::int64_t>> groups);
+  std::vector<LoopDecision> decide();
   PoseGraphUpdate optimize();
   PoseGraphUpdate optimizeFully();
   Subgraph whole(GraphState& graph) const;
-  std::vector<LoopDecision> decisions() const;
+  LoopDecision decision(int loop) const;
   void transfer(StateArchive& archive);
 
   mutable GraphState graph_;  // lent to Ceres, whose interface takes mutable addresses also for evaluation
@@ -49,62 +43,60 @@ class PoseGraph::Impl {
  private:
   bool solveGlobally(const Deadline& deadline, PoseGraphUpdate& update);
   void closeLoops(const Deadline& deadline, PoseGraphUpdate& update);
-  bool solveWindow(const std::vector<int>& submaps, int iterations, double max_seconds, PoseGraphUpdate& update);
-  void reportChanges(PoseGraphUpdate& update);
+  bool solveWindow(const std::vector<int>& nodes, int iterations, double max_seconds, PoseGraphUpdate& update);
+  std::vector<LoopDecision> takeChanges();
 
   PoseGraphConfig config_;
   LoopReview review_;
   Hierarchy hierarchy_;
   int in_hierarchy_ = 0;
-  std::vector<LoopState> reported_;
+  std::vector<std::optional<LoopState>> reported_;
   std::vector<OdometryStep> odometry_;
 };
 
-int PoseGraph::Impl::addSubmap(const SubmapNode& node) {
-  const int index = static_cast<int>(graph_.submaps.size());
+int PoseGraph::Impl::addNode(const PoseNode& node) {
+  const int index = graph_.nodeCount();
   check(node, index == 0);
-  SubmapState& submap = graph_.submaps.emplace_back();
-  const Pose before = index == 0 ? Pose::identity() : graph_.submaps[index - 1].pose();
-  writeBlock(before * node.T_previous_submap, submap.block.data());
+  NodeState& state = graph_.nodes.emplace_back();
+  const Pose before = index == 0 ? Pose::identity() : graph_.nodes[index - 1].pose();
+  writeBlock(before * node.T_previous_node, state.block.data());
   if (index > 0) {
-    submap.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_submap, node.odometry_cov.inverse());
+    state.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_node, node.odometry_cov.inverse());
   }
   for (const LandmarkSighting& sighting : node.sightings) graph_.addSighting(sighting);
-  odometry_.push_back({node.T_previous_submap, node.odometry_cov});
-  review_.extendOdometry(node.T_previous_submap, node.odometry_cov, index == 0);
+  odometry_.push_back({node.T_previous_node, node.odometry_cov});
+  review_.extendOdometry(node.T_previous_node, node.odometry_cov, index == 0);
   return index;
 }
 
 int PoseGraph::Impl::addLoopClosure(const LoopConstraint& loop) {
-  const int count = static_cast<int>(graph_.submaps.size());
+  const int count = graph_.nodeCount();
   require(loop.from >= 0 && loop.from < count && loop.to >= 0 && loop.to < count && loop.from != loop.to,
-          "a loop closure joins two different submaps that exist");
+          "a loop closure joins two different nodes that exist");
   require(loop.T_from_to.isValid(), "a loop closure is not a finite pose");
   require(isCovariance6(loop.cov), "a loop closure's covariance is not positive definite");
-  const int index = static_cast<int>(graph_.loops.size());
+  const int index = graph_.loopCount();
   LoopState3& state = graph_.loops.emplace_back();
   state.constraint = loop;
   state.cost = std::make_unique<RelativePose3Cost>(loop.T_from_to, loop.cov.inverse());
-  graph_.submaps[loop.from].loops.push_back(index);
-  graph_.submaps[loop.to].loops.push_back(index);
+  graph_.nodes[loop.from].loops.push_back(index);
+  graph_.nodes[loop.to].loops.push_back(index);
   review_.add(graph_, loop);
   return index;
 }
 
-void PoseGraph::Impl::addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov) {
-  require(submap >= 0 && submap < static_cast<int>(graph_.submaps.size()), "a prior is for a submap that exists");
-  require(T_world_submap.isValid() && isCovariance6(cov), "a prior is not finite or not positive definite");
-  graph_.submaps[submap].priors.push_back(
-      {T_world_submap, cov, std::make_unique<RelativePose3Cost>(T_world_submap, cov.inverse())});
+void PoseGraph::Impl::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
+  require(node >= 0 && node < graph_.nodeCount(), "a prior is for a node that exists");
+  require(T_world_node.isValid() && isCovariance6(cov), "a prior is not finite or not positive definite");
+  graph_.nodes[node].priors.push_back(
+      {T_world_node, cov, std::make_unique<RelativePose3Cost>(T_world_node, cov.inverse())});
   ++graph_.priors;
 }
 
-void PoseGraph::Impl::mergeLandmarks(std::int64_t merged, std::int64_t survivor) {
-  require(merged != survivor, "a landmark is not merged with itself");
-  const std::int64_t from = graph_.keptNumber(merged);
-  const std::int64_t to = graph_.keptNumber(survivor);
-  require(graph_.landmarks.count(from) > 0 && graph_.landmarks.count(to) > 0, "only landmarks that exist are merged");
-  if (from != to) hierarchy_.touch(graph_.mergeLandmarks(from, to));
+void PoseGraph::Impl::regroup(std::vector<std::vector<std::int64_t>> groups) {
+  for (auto& group : groups) std::sort(group.begin(), group.end());
+  check(groups, graph_);
+  hierarchy_.touch(graph_.regroup(groups));
 }
 
 void PoseGraph::Impl::transfer(StateArchive& archive) {
@@ -113,9 +105,9 @@ void PoseGraph::Impl::transfer(StateArchive& archive) {
 }
 
 /// True if the solution was not cut short.
-bool PoseGraph::Impl::solveWindow(const std::vector<int>& submaps, int iterations, double max_seconds,
+bool PoseGraph::Impl::solveWindow(const std::vector<int>& nodes, int iterations, double max_seconds,
                                   PoseGraphUpdate& update) {
-  Subgraph window(graph_, submaps, Surroundings::kHeld, config_);
+  Subgraph window(graph_, nodes, Surroundings::kHeld, config_);
   const Subgraph::Outcome outcome = window.optimize(iterations, max_seconds);
   update.iterations += outcome.iterations;
   update.out_of_time = update.out_of_time || outcome.out_of_time;
@@ -145,12 +137,12 @@ bool PoseGraph::Impl::solveGlobally(const Deadline& deadline, PoseGraphUpdate& u
 PoseGraphUpdate PoseGraph::Impl::optimize() {
   const Deadline deadline(config_.time_budget_s);
   PoseGraphUpdate update;
-  const int count = static_cast<int>(graph_.submaps.size());
+  const int count = graph_.nodeCount();
   if (count == 0) return update;
-  solveWindow(range(std::max(0, count - config_.window_submaps), count), config_.window_iterations,
+  solveWindow(range(std::max(0, count - config_.window_nodes), count), config_.window_iterations,
               deadline.left_s(kWindowShare), update);
   hierarchy_.synchronize(graph_);
-  const bool has_time = in_hierarchy_ == count;  // no new submap
+  const bool has_time = in_hierarchy_ == count;  // no new node
   for (; in_hierarchy_ < count; ++in_hierarchy_) hierarchy_.extend(graph_, review_, in_hierarchy_);
   hierarchy_.linkTouched(graph_, review_);
   review_.decide(graph_);
@@ -165,15 +157,15 @@ PoseGraphUpdate PoseGraph::Impl::optimize() {
     if (!bent.empty()) solveWindow(bent, kRepairIterations, deadline.left_s(), update);
   }
   update.out_of_time = update.out_of_time || deadline.hasPassed();
-  reportChanges(update);
+  update.loop_changes = takeChanges();
   return update;
 }
 
 /// Lets new loop closures act on the whole drive.
 void PoseGraph::Impl::closeLoops(const Deadline& deadline, PoseGraphUpdate& update) {
   const bool is_solved = solveGlobally(deadline, update);
-  const int count = static_cast<int>(graph_.submaps.size());
-  const bool is_small = count <= config_.whole_submaps && !deadline.hasPassed();
+  const int count = graph_.nodeCount();
+  const bool is_small = count <= config_.whole_nodes && !deadline.hasPassed();
   if (update.failure.empty() && (is_solved || hierarchy_.hasNews()) && is_small) {
     if (solveWindow(range(0, count), config_.window_iterations, deadline.left_s(), update))
       hierarchy_.finishWhole(graph_);
@@ -186,39 +178,40 @@ void PoseGraph::Impl::closeLoops(const Deadline& deadline, PoseGraphUpdate& upda
 }
 
 Subgraph PoseGraph::Impl::whole(GraphState& graph) const {
-  return Subgraph(graph, range(0, static_cast<int>(graph.submaps.size())), Surroundings::kHeld, config_);
+  return Subgraph(graph, range(0, graph.nodeCount()), Surroundings::kHeld, config_);
 }
 
 PoseGraphUpdate PoseGraph::Impl::optimizeFully() {
   PoseGraphUpdate update = optimize();
-  if (graph_.submaps.empty()) return update;
+  if (graph_.nodes.empty()) return update;
   const Subgraph::Outcome outcome = whole(graph_).optimize(kFullIterations, 0.0, kFullTolerance);
   update.iterations += outcome.iterations;
   update.moved_everything = true;
   if (!outcome.failure.empty()) update.failure = outcome.failure;
   if (outcome.failure.empty()) hierarchy_.finishWhole(graph_);
-  reportChanges(update);
+  update.loop_changes = takeChanges();
   return update;
 }
 
-void PoseGraph::Impl::reportChanges(PoseGraphUpdate& update) {
-  const int known = static_cast<int>(reported_.size());
-  for (int i = std::min(known, review_.firstOpen(graph_)); i < static_cast<int>(graph_.loops.size()); ++i) {
-    const LoopState3& loop = graph_.loops[i];
-    const bool is_new = i >= known;
-    if (is_new) reported_.push_back(loop.state);
-    if (!is_new && reported_[i] == loop.state) continue;
-    reported_[i] = loop.state;
-    update.loop_changes.push_back({i, loop.state, mahalanobisSq(graph_, loop.constraint)});
-  }
+LoopDecision PoseGraph::Impl::decision(int loop) const {
+  return {loop, graph_.loops[loop].state, mahalanobisSq(graph_, graph_.loops[loop].constraint)};
 }
 
-std::vector<LoopDecision> PoseGraph::Impl::decisions() const {
-  std::vector<LoopDecision> result;
-  for (int i = 0; i < static_cast<int>(graph_.loops.size()); ++i) {
-    result.push_back({i, graph_.loops[i].state, mahalanobisSq(graph_, graph_.loops[i].constraint)});
+std::vector<LoopDecision> PoseGraph::Impl::takeChanges() {
+  std::vector<LoopDecision> changes;
+  reported_.resize(graph_.loops.size());
+  for (int i = 0; i < graph_.loopCount(); ++i) {
+    const LoopState state = graph_.loops[i].state;
+    if (reported_[i] == state) continue;
+    reported_[i] = state;
+    changes.push_back(decision(i));
   }
-  return result;
+  return changes;
+}
+
+std::vector<LoopDecision> PoseGraph::Impl::decide() {
+  review_.decide(graph_);
+  return takeChanges();
 }
 
 PoseGraph::PoseGraph(const PoseGraphConfig& config) {
@@ -229,17 +222,20 @@ PoseGraph::~PoseGraph() = default;
 PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
 PoseGraph& PoseGraph::operator=(PoseGraph&&) noexcept = default;
 
-int PoseGraph::addSubmap(const SubmapNode& submap) {
-  return impl_->addSubmap(submap);
+int PoseGraph::addNode(const PoseNode& node) {
+  return impl_->addNode(node);
 }
 int PoseGraph::addLoopClosure(const LoopConstraint& loop) {
   return impl_->addLoopClosure(loop);
 }
-void PoseGraph::addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov) {
-  impl_->addPrior(submap, T_world_submap, cov);
+void PoseGraph::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
+  impl_->addPrior(node, T_world_node, cov);
 }
-void PoseGraph::mergeLandmarks(std::int64_t merged, std::int64_t survivor) {
-  impl_->mergeLandmarks(merged, survivor);
+void PoseGraph::regroup(const std::vector<std::vector<std::int64_t>>& groups) {
+  impl_->regroup(groups);
+}
+std::vector<LoopDecision> PoseGraph::decide() {
+  return impl_->decide();
 }
 PoseGraphUpdate PoseGraph::optimize() {
   return impl_->optimize();
@@ -248,22 +244,22 @@ PoseGraphUpdate PoseGraph::optimizeFully() {
   return impl_->optimizeFully();
 }
 void PoseGraph::transfer(StateArchive& archive) {
-  if (archive.isReading() && submaps() > 0) throw std::logic_error("PoseGraph: a state is read into an empty graph");
+  if (archive.isReading() && nodes() > 0) throw std::logic_error("PoseGraph: a state is read into an empty graph");
   impl_->transfer(archive);
 }
-int PoseGraph::submaps() const {
-  return static_cast<int>(impl_->graph_.submaps.size());
+int PoseGraph::nodes() const {
+  return impl_->graph_.nodeCount();
 }
 
 std::vector<Pose> PoseGraph::poses() const {
   std::vector<Pose> result;
-  for (const SubmapState& submap : impl_->graph_.submaps) result.push_back(submap.pose());
+  for (const NodeState& node : impl_->graph_.nodes) result.push_back(node.pose());
   return result;
 }
 
-Pose PoseGraph::pose(int submap) const {
-  require(submap >= 0 && submap < submaps(), "there is no such submap");
-  return impl_->graph_.submaps[submap].pose();
+Pose PoseGraph::pose(int node) const {
+  require(node >= 0 && node < nodes(), "there is no such node");
+  return impl_->graph_.nodes[node].pose();
 }
 
 std::optional<Eigen::Vector3d> PoseGraph::landmark(std::int64_t id) const {
@@ -273,23 +269,25 @@ std::optional<Eigen::Vector3d> PoseGraph::landmark(std::int64_t id) const {
 }
 
 std::vector<LoopDecision> PoseGraph::loopDecisions() const {
-  return impl_->decisions();
+  std::vector<LoopDecision> result;
+  for (int i = 0; i < impl_->graph_.loopCount(); ++i) result.push_back(impl_->decision(i));
+  return result;
 }
 
 double PoseGraph::cost() const {
-  return submaps() == 0 ? 0.0 : impl_->whole(impl_->graph_).cost();
+  return nodes() == 0 ? 0.0 : impl_->whole(impl_->graph_).cost();
 }
 
-std::optional<PoseCov> PoseGraph::poseCovariance(int submap) const {
-  require(submap >= 0 && submap < submaps(), "there is no such submap");
-  if (submap == 0) return PoseCov::Zero();
-  const auto step_cov = impl_->whole(impl_->graph_).poseStepCovariance(submap);
+std::optional<PoseCov> PoseGraph::poseCovariance(int node) const {
+  require(node >= 0 && node < nodes(), "there is no such node");
+  if (node == 0) return PoseCov::Zero();
+  const auto step_cov = impl_->whole(impl_->graph_).poseStepCovariance(node);
   if (!step_cov) return std::nullopt;
-  return errorCov(pose(submap), *step_cov);
+  return errorCov(pose(node), *step_cov);
 }
 
 std::optional<Eigen::Matrix3d> PoseGraph::landmarkCovariance(std::int64_t id) const {
-  if (submaps() == 0) return std::nullopt;
+  if (nodes() == 0) return std::nullopt;
   const auto cov = impl_->whole(impl_->graph_).landmarkCovariance(impl_->graph_.keptNumber(id));
   if (!cov) return std::nullopt;
   return Eigen::Matrix3d(*cov);

@@ -7,17 +7,17 @@ void describe(PoseGraphConfig& config, Fields& fields) {
              "Whitened error of a loop closure where its Cauchy loss begins to flatten.");
   fields.add("landmark_cauchy_scale", config.landmark_cauchy_scale, "", {1e-3, 1e3},
              "Whitened error of a landmark sighting where its Cauchy loss begins to flatten.");
-  fields.add("window_submaps", config.window_submaps, "", {1, 1000},
-             "Newest submaps that every call optimises in full.");
-  fields.add("chunk_submaps", config.chunk_submaps, "", {2, 1000},
-             "Submaps between two nodes of the skeleton that loop closures are solved on.");
+  fields.add("window_nodes", config.window_nodes, "", {1, 1000},
+             "Newest nodes (keyframes) that every call optimises in full.");
+  fields.add("chunk_nodes", config.chunk_nodes, "", {2, 1000},
+             "Nodes to a hub of the skeleton that loop closures are solved on.");
   fields.add("window_iterations", config.window_iterations, "", {1, 100},
-             "Iterations of the newest submaps in one call.");
+             "Iterations of the newest nodes in one call.");
   fields.add("global_iterations", config.global_iterations, "", {1, 100},
              "Iterations of the skeleton in one call; what is left is done in the next.");
   fields.add("repair_interval", config.repair_interval, "", {0, 1000},
-             "Every so many submaps a piece of the drive that loop closures bent is optimised in full; 0: never.");
-  fields.add("whole_submaps", config.whole_submaps, "", {0, 1000000},
+             "Every so many nodes a piece of the drive that loop closures bent is optimised in full; 0: never.");
+  fields.add("whole_nodes", config.whole_nodes, "", {0, 1000000},
              "Graphs up to this size are optimised as a whole when a loop closes.");
   fields.add("time_budget_s", config.time_budget_s, "s", {0.0, 1e6},
              "Wall clock limit of one call, 0 for none; results depend on the machine when it is reached.");

@@ -41,23 +41,23 @@ Skeleton::Skeleton(double cauchy_scale) : loss_(cauchy_scale), problem_(problemO
   problem_.SetParameterBlockConstant(world_.data());
 }
 
-int Skeleton::addNode(const Pose& pose) {
+int Skeleton::addHub(const Pose& pose) {
   double* block = blocks_.emplace_back().data();
   writeBlock(pose, block);
   problem_.AddParameterBlock(block, kPoseBlock);
   setManifold(problem_, block, &manifold_);
-  if (nodes() == 1) problem_.SetParameterBlockConstant(block);
-  return nodes() - 1;
+  if (hubs() == 1) problem_.SetParameterBlockConstant(block);
+  return hubs() - 1;
 }
 
-Pose Skeleton::pose(int node) const {
+Pose Skeleton::pose(int hub) const {
   Pose pose;
-  readBlock(blocks_[node].data(), pose);
+  readBlock(blocks_[hub].data(), pose);
   return pose;
 }
 
-void Skeleton::setPose(int node, const Pose& pose) {
-  writeBlock(pose, blocks_[node].data());
+void Skeleton::setPose(int hub, const Pose& pose) {
+  writeBlock(pose, blocks_[hub].data());
 }
 
 int Skeleton::addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov) {
@@ -101,7 +101,7 @@ Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
   const auto backup = blocks_;
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // Half the time of CHOLMOD on a few hundred nodes (docs/pose_graph.md).
+  // Half the time of CHOLMOD on a few hundred hubs (docs/pose_graph.md).
   if (ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::EIGEN_SPARSE)) {
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   }

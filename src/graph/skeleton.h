@@ -18,18 +18,18 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
-/// Coarse pose graph: a node for the first submap of every chunk and condensed factors between them. The Ceres problem
+/// Coarse pose graph: a hub for the first node of every chunk and condensed factors between them. The Ceres problem
 /// is kept from call to call; links are added and taken out in place.
 class Skeleton {
  public:
   explicit Skeleton(double cauchy_scale);
 
-  int addNode(const Pose& pose);
-  int nodes() const { return static_cast<int>(blocks_.size()); }
-  Pose pose(int node) const;
-  void setPose(int node, const Pose& pose);
+  int addHub(const Pose& pose);
+  int hubs() const { return static_cast<int>(blocks_.size()); }
+  Pose pose(int hub) const;
+  void setPose(int hub, const Pose& pose);
 
-  /// Joins two different nodes, or a node with the world (`kWorld` as `from`), without robust loss. Returns the number
+  /// Joins two different hubs, or a hub with the world (`kWorld` as `from`), without robust loss. Returns the number
   /// of the link, which is not active yet.
   int addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov);
   void setActive(int link, bool is_active);
@@ -51,7 +51,7 @@ class Skeleton {
   };
   Outcome optimize(int max_iterations, double max_seconds);
 
-  /// Nodes and links with the order in which the solver sees them; into an empty skeleton, or out of one.
+  /// Hubs and links with the order in which the solver sees them; into an empty skeleton, or out of one.
   void transfer(StateArchive& archive);
 
  private:
@@ -67,8 +67,8 @@ class Skeleton {
 
   std::vector<int> activeLinks() const;
 
-  const double* block(int node) const { return node == kWorld ? world_.data() : blocks_[node].data(); }
-  double* block(int node) { return node == kWorld ? world_.data() : blocks_[node].data(); }
+  const double* block(int hub) const { return hub == kWorld ? world_.data() : blocks_[hub].data(); }
+  double* block(int hub) { return hub == kWorld ? world_.data() : blocks_[hub].data(); }
 
   std::deque<std::array<double, kPoseBlock>> blocks_;
   std::deque<Link> links_;

@@ -14,22 +14,21 @@ namespace {
 
 constexpr double kContested = 9.0;  // squared distance in units of the squared scale of the robust loss
 
-/// What sightings from submaps that stay where they are say about a landmark: in its position they are linear, so that
+/// What sightings from nodes that stay where they are say about a landmark: in its position they are linear, so that
 /// any number of them is one Gaussian.
 class SightingsTogether {
  public:
   /// Squared whitened distance of a sighting from a position.
-  static double distanceSq(const Pose& T_world_submap, const PointCost<3>& sighting,
-                           const Eigen::Vector3d& landmark_m) {
-    const Eigen::Vector3d error = T_world_submap.inverse() * landmark_m - sighting.measured();
+  static double distanceSq(const Pose& T_world_node, const PointCost<3>& sighting, const Eigen::Vector3d& landmark_m) {
+    const Eigen::Vector3d error = T_world_node.inverse() * landmark_m - sighting.measured();
     return (sighting.squareRoot() * error).squaredNorm();
   }
 
-  void add(const Pose& T_world_submap, const PointCost<3>& sighting, double weight) {
-    const Eigen::Matrix3d by_point = sighting.squareRoot() * T_world_submap.rotation.conjugate().toRotationMatrix();
+  void add(const Pose& T_world_node, const PointCost<3>& sighting, double weight) {
+    const Eigen::Matrix3d by_point = sighting.squareRoot() * T_world_node.rotation.conjugate().toRotationMatrix();
     const Eigen::Matrix3d information = weight * by_point.transpose() * by_point;
     information_ += information;
-    weighted_ += information * (T_world_submap * sighting.measured());
+    weighted_ += information * (T_world_node * sighting.measured());
   }
 
   bool isEmpty() const { return information_.isZero(0.0); }
@@ -52,40 +51,39 @@ Eigen::SparseMatrix<double> normalMatrix(const ceres::CRSMatrix& jacobian) {
 
 }  // namespace
 
-Subgraph::Subgraph(GraphState& graph, std::vector<int> submaps, Surroundings surroundings,
-                   const PoseGraphConfig& config)
+Subgraph::Subgraph(GraphState& graph, std::vector<int> nodes, Surroundings surroundings, const PoseGraphConfig& config)
     : graph_(graph),
-      submaps_(std::move(submaps)),
+      nodes_(std::move(nodes)),
       surroundings_(surroundings),
-      fixed_(surroundings == Surroundings::kIgnored ? submaps_.front() : 0),
+      fixed_(surroundings == Surroundings::kIgnored ? nodes_.front() : 0),
       landmark_scale_(config.landmark_cauchy_scale),
       loop_loss_(config.loop_cauchy_scale),
       landmark_loss_(config.landmark_cauchy_scale),
       problem_(lentProblemOptions()) {
-  for (const int submap : submaps_) addPose(submap);
-  for (const int submap : submaps_) addSubmapFactors(submap);
-  for (const int submap : submaps_) {
-    for (const std::int64_t id : graph_.submaps[submap].landmarks) {
+  for (const int node : nodes_) addPose(node);
+  for (const int node : nodes_) addNodeFactors(node);
+  for (const int node : nodes_) {
+    for (const std::int64_t id : graph_.nodes[node].landmarks) {
       if (landmarks_.count(id) == 0) addLandmark(id);
     }
   }
 }
 
-bool Subgraph::isInside(int submap) const {
-  return std::binary_search(submaps_.begin(), submaps_.end(), submap);
+bool Subgraph::isInside(int node) const {
+  return std::binary_search(nodes_.begin(), nodes_.end(), node);
 }
 
-bool Subgraph::isVariable(int submap) const {
-  return submap != fixed_ && isInside(submap);
+bool Subgraph::isVariable(int node) const {
+  return node != fixed_ && isInside(node);
 }
 
-/// Adds the block of a submap once; submaps from outside are held.
-void Subgraph::addPose(int submap) {
-  double* block = graph_.submaps[submap].block.data();
+/// Adds the block of a node once; nodes from outside are held.
+void Subgraph::addPose(int node) {
+  double* block = graph_.nodes[node].block.data();
   if (problem_.HasParameterBlock(block)) return;
   problem_.AddParameterBlock(block, kPoseBlock);
   setManifold(problem_, block, &manifold_);
-  if (!isVariable(submap)) problem_.SetParameterBlockConstant(block);
+  if (!isVariable(node)) problem_.SetParameterBlockConstant(block);
 }
 
 void Subgraph::add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to) {
@@ -93,28 +91,28 @@ void Subgraph::add(ceres::CostFunction* cost, ceres::LossFunction* loss, double*
   problem_.AddResidualBlock(cost, loss, from, to);
 }
 
-/// Odometry from the submap before, odometry to one behind that is outside, loop closures, priors.
-void Subgraph::addSubmapFactors(int submap) {
-  SubmapState& state = graph_.submaps[submap];
+/// Odometry from the node before, odometry to one behind that is outside, loop closures, priors.
+void Subgraph::addNodeFactors(int node) {
+  NodeState& state = graph_.nodes[node];
   const bool take_outside = surroundings_ == Surroundings::kHeld;
   const auto join = [&](ceres::CostFunction* cost, ceres::LossFunction* loss, int from, int to) {
     addPose(from);
     addPose(to);
-    add(cost, loss, graph_.submaps[from].block.data(), graph_.submaps[to].block.data());
+    add(cost, loss, graph_.nodes[from].block.data(), graph_.nodes[to].block.data());
   };
-  if (submap > 0 && (isInside(submap - 1) || take_outside)) {
-    join(state.odometry_cost.get(), nullptr, submap - 1, submap);
+  if (node > 0 && (isInside(node - 1) || take_outside)) {
+    join(state.odometry_cost.get(), nullptr, node - 1, node);
   }
-  const int next = submap + 1;
-  if (take_outside && next < static_cast<int>(graph_.submaps.size()) && !isInside(next)) {
-    join(graph_.submaps[next].odometry_cost.get(), nullptr, submap, next);
+  const int next = node + 1;
+  if (take_outside && next < graph_.nodeCount() && !isInside(next)) {
+    join(graph_.nodes[next].odometry_cost.get(), nullptr, node, next);
   }
   if (!take_outside) return;
   for (const int index : state.loops) {
     const LoopState3& loop = graph_.loops[index];
     if (loop.state != LoopState::kAccepted || !loop.is_reviewed) continue;
-    const int other = loop.constraint.from == submap ? loop.constraint.to : loop.constraint.from;
-    if (isInside(other) && other < submap) continue;  // was added there
+    const int other = loop.constraint.from == node ? loop.constraint.to : loop.constraint.from;
+    if (isInside(other) && other < node) continue;  // was added there
     join(loop.cost.get(), &loop_loss_, loop.constraint.from, loop.constraint.to);
   }
   for (const PriorFactor& prior : state.priors) {
@@ -131,30 +129,28 @@ void Subgraph::addLandmark(std::int64_t id) {
   double* block = landmarks_.emplace(id, graph_.landmarkInWorld(landmark)).first->second.data();
   problem_.AddParameterBlock(block, 3);
   const auto addSighting = [&](const SightingFactor& sighting) {
-    problem_.AddResidualBlock(sighting.cost.get(), &landmark_loss_, graph_.submaps[sighting.submap].block.data(),
-                              block);
+    problem_.AddResidualBlock(sighting.cost.get(), &landmark_loss_, graph_.nodes[sighting.node].block.data(), block);
   };
   SightingsTogether inside;
   for (const SightingFactor& sighting : landmark.sightings) {
-    if (!isInside(sighting.submap)) continue;
+    if (!isInside(sighting.node)) continue;
     addSighting(sighting);
-    inside.add(graph_.submaps[sighting.submap].pose(), *sighting.cost, 1.0);
+    inside.add(graph_.nodes[sighting.node].pose(), *sighting.cost, 1.0);
   }
-  const bool is_seen_outside =
-      !isInside(landmark.sightings.front().submap) || !isInside(landmark.sightings.back().submap);
+  const bool is_seen_outside = !isInside(landmark.sightings.front().node) || !isInside(landmark.sightings.back().node);
   if (surroundings_ == Surroundings::kHeld && is_seen_outside) addHeldSightings(landmark, inside.mean_m(), block);
 }
 
-/// The weight of each is that of the robust loss where the submaps inside see the landmark. Sightings far from there
-/// mean a loop that is still open: closing it is not for a few submaps, which it would only bend.
+/// The weight of each is that of the robust loss where the nodes inside see the landmark. Sightings far from there
+/// mean a loop that is still open: closing it is not for a few nodes, which it would only bend.
 void Subgraph::addHeldSightings(const LandmarkState& landmark, const Eigen::Vector3d& seen_inside_m, double* block) {
   const double scale_sq = landmark_scale_ * landmark_scale_;
   SightingsTogether held;
   for (const SightingFactor& sighting : landmark.sightings) {
-    if (isInside(sighting.submap)) continue;
-    const Pose T_world_submap = graph_.submaps[sighting.submap].pose();
-    const double ratio = SightingsTogether::distanceSq(T_world_submap, *sighting.cost, seen_inside_m) / scale_sq;
-    if (ratio < kContested) held.add(T_world_submap, *sighting.cost, 1.0 / (1.0 + ratio));
+    if (isInside(sighting.node)) continue;
+    const Pose T_world_node = graph_.nodes[sighting.node].pose();
+    const double ratio = SightingsTogether::distanceSq(T_world_node, *sighting.cost, seen_inside_m) / scale_sq;
+    if (ratio < kContested) held.add(T_world_node, *sighting.cost, 1.0 / (1.0 + ratio));
   }
   if (held.isEmpty()) return;
   problem_.AddResidualBlock(&held_.emplace_back(held.mean_m(), held.information()), nullptr, block);
@@ -162,8 +158,8 @@ void Subgraph::addHeldSightings(const LandmarkState& landmark, const Eigen::Vect
 
 std::vector<double> Subgraph::snapshot() const {
   std::vector<double> values;
-  for (const int submap : submaps_) {
-    const auto& block = graph_.submaps[submap].block;
+  for (const int node : nodes_) {
+    const auto& block = graph_.nodes[node].block;
     values.insert(values.end(), block.begin(), block.end());
   }
   return values;
@@ -171,17 +167,17 @@ std::vector<double> Subgraph::snapshot() const {
 
 void Subgraph::restore(const std::vector<double>& backup) {
   auto value = backup.begin();
-  for (const int submap : submaps_) {
-    std::copy_n(value, kPoseBlock, graph_.submaps[submap].block.begin());
+  for (const int node : nodes_) {
+    std::copy_n(value, kPoseBlock, graph_.nodes[node].block.begin());
     value += kPoseBlock;
   }
 }
 
-/// Landmarks are kept in the frame of the submap that saw them first.
+/// Landmarks are kept in the frame of the node that saw them first.
 void Subgraph::storeLandmarks() {
   for (const auto& [id, position_m] : landmarks_) {
     LandmarkState& landmark = graph_.landmarks.at(id);
-    landmark.position_m = graph_.submaps[landmark.anchor].pose().inverse() * position_m;
+    landmark.position_m = graph_.nodes[landmark.anchor].pose().inverse() * position_m;
   }
 }
 
@@ -229,8 +225,8 @@ std::optional<Eigen::MatrixXd> Subgraph::covarianceOf(const double* block, int s
     options.parameter_blocks.push_back(candidate);
     columns += step_size;
   };
-  for (const int submap : submaps_) {
-    if (isVariable(submap)) take(graph_.submaps[submap].block.data(), 6);
+  for (const int node : nodes_) {
+    if (isVariable(node)) take(graph_.nodes[node].block.data(), 6);
   }
   for (auto& [id, position_m] : landmarks_) take(position_m.data(), 3);
   ceres::CRSMatrix jacobian;
@@ -245,9 +241,9 @@ std::optional<Eigen::MatrixXd> Subgraph::covarianceOf(const double* block, int s
   return covariance;
 }
 
-std::optional<Eigen::MatrixXd> Subgraph::poseStepCovariance(int submap) {
-  if (!isVariable(submap)) return std::nullopt;
-  return covarianceOf(graph_.submaps[submap].block.data(), 6);
+std::optional<Eigen::MatrixXd> Subgraph::poseStepCovariance(int node) {
+  if (!isVariable(node)) return std::nullopt;
+  return covarianceOf(graph_.nodes[node].block.data(), 6);
 }
 
 std::optional<Eigen::MatrixXd> Subgraph::landmarkCovariance(std::int64_t id) {

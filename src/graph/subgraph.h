@@ -16,19 +16,19 @@
 
 namespace semantic_mht_slam {
 
-/// Which factors a subgraph takes beside those among its own submaps.
+/// Which factors a subgraph takes beside those among its own nodes.
 enum class Surroundings {
-  kHeld,     ///< factors to other submaps count, with the other submap held: for optimising in place
+  kHeld,     ///< factors to other nodes count, with the other node held: for optimising in place
   kIgnored,  ///< only factors inside: for what the subgraph alone knows about its own shape
 };
 
-/// Some submaps of a graph and all landmarks that they saw, as a problem of its own. The cost functions are lent by the
+/// Some nodes of a graph and all landmarks that they saw, as a problem of its own. The cost functions are lent by the
 /// graph, so that setting one up costs a few microseconds a factor, a tenth of one iteration.
 class Subgraph {
  public:
-  /// `submaps` ascending, without duplicates. The first submap of the graph is always held; with kIgnored the first
-  /// submap of the subgraph is.
-  Subgraph(GraphState& graph, std::vector<int> submaps, Surroundings surroundings, const PoseGraphConfig& config);
+  /// `nodes` ascending, without duplicates. The first node of the graph is always held; with kIgnored the first
+  /// node of the subgraph is.
+  Subgraph(GraphState& graph, std::vector<int> nodes, Surroundings surroundings, const PoseGraphConfig& config);
 
   struct Outcome {
     std::string failure;  ///< empty, or why nothing was changed
@@ -43,16 +43,16 @@ class Subgraph {
   /// Half the squared whitened errors, without robust losses.
   double cost();
 
-  /// Covariance of the 6 step coordinates (rotation, translation; see `PoseManifold`) of a variable submap, or of a
+  /// Covariance of the 6 step coordinates (rotation, translation; see `PoseManifold`) of a variable node, or of a
   /// landmark's 3 coordinates; empty if the problem is singular.
-  std::optional<Eigen::MatrixXd> poseStepCovariance(int submap);
+  std::optional<Eigen::MatrixXd> poseStepCovariance(int node);
   std::optional<Eigen::MatrixXd> landmarkCovariance(std::int64_t id);
 
  private:
-  bool isVariable(int submap) const;
-  bool isInside(int submap) const;
-  void addPose(int submap);
-  void addSubmapFactors(int submap);
+  bool isVariable(int node) const;
+  bool isInside(int node) const;
+  void addPose(int node);
+  void addNodeFactors(int node);
   void addLandmark(std::int64_t id);
   void addHeldSightings(const LandmarkState& landmark, const Eigen::Vector3d& seen_inside_m, double* block);
   void add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to);
@@ -62,7 +62,7 @@ class Subgraph {
   void storeLandmarks();
 
   GraphState& graph_;
-  std::vector<int> submaps_;
+  std::vector<int> nodes_;
   Surroundings surroundings_;
   int fixed_;
   double landmark_scale_;
@@ -71,7 +71,7 @@ class Subgraph {
   ceres::CauchyLoss loop_loss_;
   ceres::CauchyLoss landmark_loss_;
   PoseManifold manifold_;
-  std::deque<PointPriorCost> held_;  ///< what sightings from held submaps say, one a landmark
+  std::deque<PointPriorCost> held_;  ///< what sightings from held nodes say, one a landmark
   ceres::Problem problem_;
 };
 

@@ -21,6 +21,19 @@ const MixtureLandmark* findLandmark(LandmarkId id, const std::vector<MixtureLand
   return place == landmarks.end() || place->id != id ? nullptr : &*place;
 }
 
+MixtureLandmark transformed(const Pose& T_a_b, const MixtureLandmark& landmark) {
+  const Eigen::Matrix3d R = T_a_b.rotation.toRotationMatrix();
+  const auto move = [&](Gaussian3& gaussian) {
+    gaussian.mean_m = T_a_b * gaussian.mean_m;
+    const Eigen::Matrix3d cov = R * gaussian.cov_m2 * R.transpose();
+    gaussian.cov_m2 = 0.5 * (cov + cov.transpose());
+  };
+  MixtureLandmark result = landmark;
+  move(result.position);
+  for (MixtureComponent& component : result.components) move(component.position);
+  return result;
+}
+
 Gaussian3 moments(const std::vector<MixtureComponent>& components) {
   if (components.empty()) throw std::invalid_argument("a mixture without components");
   double weight = 0.0;

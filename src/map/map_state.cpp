@@ -1,10 +1,65 @@
 #include "semantic_mht_slam/map/map_state.h"
 
+#include <algorithm>
+#include <optional>
+
+#include "semantic_mht_slam/map/map.h"
+
+// The state of the finished part of the map. What follows from something else that is written is not written again.
 namespace semantic_mht_slam {
 namespace {
 
 bool areEqual(const Gaussian3& a, const Gaussian3& b) {
   return a.mean_m == b.mean_m && a.cov_m2 == b.cov_m2;
+}
+
+bool areEqual(const SceneObject& a, const SceneObject& b) {
+  return a.position_m == b.position_m && a.cov_m2 == b.cov_m2 && a.class_index == b.class_index &&
+         a.landmark == b.landmark;
+}
+
+/// What a keyframe sees, from the submap that it was cut from.
+class SceneOfSubmap {
+ public:
+  SceneOfSubmap(const Submap& submap, const Pose& T_odom_keyframe, double floor_m)
+      : submap_(submap), T_keyframe_submap_(T_odom_keyframe.inverse() * submap.T_odom_submap), floor_m_(floor_m) {}
+
+  std::optional<SceneObject> find(LandmarkId id) const {
+    const MixtureLandmark* landmark = findLandmark(id, submap_.landmarks);
+    if (landmark == nullptr) return std::nullopt;
+    return sceneObject(*landmark, T_keyframe_submap_, floor_m_);
+  }
+
+  /// Objects that the submap gives are written as their ids.
+  void transfer(StateArchive& archive, std::vector<SceneObject>& objects) const {
+    const std::size_t count = archive.count(objects.size());
+    if (archive.isReading()) objects.assign(count, {});
+    LandmarkId last = 0;
+    for (SceneObject& object : objects) {
+      const std::optional<SceneObject> known = archive.isReading() ? std::nullopt : find(object.landmark);
+      bool is_known = known && areEqual(*known, object);
+      LandmarkId step = object.landmark - last;
+      archive(is_known, step);
+      object.landmark = last += step;
+      if (!is_known) {
+        archive(object.position_m, object.cov_m2, object.class_index);
+      } else if (archive.isReading()) {
+        const std::optional<SceneObject> found = find(object.landmark);
+        if (!found) StateArchive::fail("a scene shows a landmark that its submap lacks");
+        object = *found;
+      }
+    }
+  }
+
+ private:
+  const Submap& submap_;
+  Pose T_keyframe_submap_;
+  double floor_m_;
+};
+
+template <class IdType, class Value>
+void require(IdType id, const IdVector<IdType, Value>& list) {
+  if (!list.has(id)) StateArchive::fail("a number names no submap, keyframe or closure");
 }
 
 }  // namespace
@@ -48,21 +103,74 @@ void transferAssociations(StateArchive& archive, std::vector<DetectionAssociatio
   }
 }
 
-void transfer(StateArchive& archive, MergedLandmark& merged_landmark) {
-  auto& [merged, survivor] = merged_landmark;
-  archive(merged, survivor);
-}
-
-void transfer(StateArchive& archive, MapAlignment& alignment) {
-  auto& [T_earlier_submap, cov, weight, matches, is_accepted] = alignment;
-  archive(T_earlier_submap, cov, weight, matches, is_accepted);
+void transfer(StateArchive& archive, NearLandmarks& near) {
+  auto& [a, b, frames] = near;
+  archive(a, b, frames);
 }
 
 void transfer(StateArchive& archive, Submap& submap) {
-  auto& [index, begin, end, T_odom_submap, landmarks, associations, merged, alignment] = submap;
-  archive(index, begin, end, T_odom_submap, landmarks);
+  auto& [id, begin, end, T_odom_submap, landmarks, associations, duplicates, near] = submap;
+  archive(id, begin, end, T_odom_submap, landmarks);
   transferAssociations(archive, associations);
-  archive(merged, alignment);
+  archive(duplicates, near);
+}
+
+/// Without the scene.
+void transfer(StateArchive& archive, Keyframe& keyframe) {
+  archive(keyframe.frame, keyframe.submap, keyframe.stamp, keyframe.driven_m, keyframe.T_odom_base);
+}
+
+/// Of closures that never were in the pose graph only what people look at is kept.
+void transfer(StateArchive& archive, LoopClosureRecord& closure) {
+  auto& [source, query_keyframe, match_keyframe, is_verified, is_accepted, reason, score, place, inliers, T_match_query,
+         cov, pairs] = closure;
+  auto& [histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob] = place;
+  archive(source, query_keyframe, match_keyframe, is_verified, is_accepted, reason, score, inliers, T_match_query);
+  archive(histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob);
+  if (is_verified) archive(cov, pairs);
+}
+
+void Map::transferSubmaps(StateArchive& archive) {
+  std::vector<Submap> submaps;
+  for (const auto& submap : submaps_) submaps.push_back(*submap);
+  archive(submaps);
+  if (!archive.isReading()) return;
+  for (Submap& submap : submaps) {
+    if (submap.id != submaps_.nextId()) StateArchive::fail("submaps that are not in order");
+    submaps_.push_back(std::make_shared<const Submap>(std::move(submap)));
+  }
+}
+
+void Map::transferKeyframes(StateArchive& archive, int classes, double scene_floor_m) {
+  archive(keyframes_, T_map_keyframe_, first_keyframe_, closures_, identity_, scene_floor_m);
+  if (T_map_keyframe_.size() != keyframes_.size()) StateArchive::fail("a keyframe without a pose");
+  if (first_keyframe_.size() != submaps_.size()) StateArchive::fail("a submap without keyframes");
+  for (const KeyframeId first : first_keyframe_) require(first, keyframes_);
+  for (Keyframe& keyframe : keyframes_) {
+    require(keyframe.submap, submaps_);
+    SceneOfSubmap(*submaps_[keyframe.submap], keyframe.T_odom_base, scene_floor_m)
+        .transfer(archive, keyframe.scene.objects);
+    for (const SceneObject& object : keyframe.scene.objects) {
+      if (object.class_index < 0 || object.class_index >= classes) StateArchive::fail("an object of no known class");
+    }
+  }
+  for (const LoopClosureRecord& closure : closures_) {
+    require(closure.query_keyframe, keyframes_);
+    require(closure.match_keyframe, keyframes_);
+  }
+  if (archive.isReading()) restore();
+}
+
+/// What follows from submaps and closures.
+void Map::restore() {
+  std::vector<Identity::Saying> sayings;
+  for (const ClosureId id : closures_.ids()) {
+    const LoopClosureRecord& closure = closures_[id];
+    if (!closure.is_verified) continue;
+    sayings.push_back({keyframes_[closure.query_keyframe].submap, {id, closure.is_accepted}, &closure.pairs});
+  }
+  identity_.restore(submaps_, sayings);
+  for (const SubmapId submap : submaps_.ids()) noteLandmarks(submap);
 }
 
 }  // namespace semantic_mht_slam

@@ -7,8 +7,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "semantic_mht_slam/map/merged_ids.h"
-
 namespace semantic_mht_slam {
 namespace {
 
@@ -66,12 +64,6 @@ void absorb(MixtureLandmark& survivor, const MixtureLandmark& merged) {
   survivor.last_submap = std::max(survivor.last_submap, merged.last_submap);
 }
 
-LandmarkId survivorOf(const std::vector<MergedLandmark>& merged, LandmarkId id) {
-  MergedIds ids;
-  for (const MergedLandmark& step : merged) ids.merge(step.merged, step.survivor);
-  return ids.resolve(id);
-}
-
 }  // namespace
 
 void describe(DuplicateConfig& config, Fields& fields) {
@@ -84,12 +76,12 @@ void describe(DuplicateConfig& config, Fields& fields) {
              "Prior log odds that two landmarks of a class inside the gate are one object.");
 }
 
-std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
-                                            const std::vector<FusedAssociations>& associations,
-                                            const std::function<Eigen::Matrix3d(ClassIndex)>& detectorCov,
-                                            std::vector<MixtureLandmark>& landmarks) {
-  std::vector<MergedLandmark> merged;
-  if (!config.merge) return merged;
+std::vector<SameLandmark> mergeDuplicates(const DuplicateConfig& config,
+                                          const std::vector<FusedAssociations>& associations, const SideBySide& seen,
+                                          const std::function<Eigen::Matrix3d(ClassIndex)>& detectorCov,
+                                          std::vector<MixtureLandmark>& landmarks) {
+  std::vector<SameLandmark> duplicates;
+  if (!config.merge) return duplicates;
   const Sightings sightings = collectSightings(associations);
   std::vector<std::size_t> order;  // rarely seen ones first: they are merged into the others
   for (std::size_t i = 0; i < landmarks.size(); ++i) {
@@ -97,6 +89,8 @@ std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return landmarks[a].observations < landmarks[b].observations; });
+  std::vector<std::vector<LandmarkId>> names;  // of each landmark, with what it took in
+  for (const MixtureLandmark& landmark : landmarks) names.push_back({landmark.id});
   std::vector<char> is_gone(landmarks.size(), 0);
   for (std::size_t r = 0; r < order.size(); ++r) {
     MixtureLandmark& rare = landmarks[order[r]];
@@ -106,6 +100,7 @@ std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
     for (std::size_t c = r + 1; c < order.size(); ++c) {
       const MixtureLandmark& common = landmarks[order[c]];
       if (!standTogether(config, rare, common, detector_cov)) continue;
+      if (seen.excludes(names[order[r]], names[order[c]])) continue;
       const double log_odds = logOddsOfOneObject(config, sightings.at(rare.id), sightings.at(common.id));
       if (log_odds <= best) continue;
       best = log_odds;
@@ -113,7 +108,8 @@ std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
     }
     if (survivor == landmarks.size()) continue;
     absorb(landmarks[survivor], rare);
-    merged.push_back({rare.id, landmarks[survivor].id});
+    names[survivor].insert(names[survivor].end(), names[order[r]].begin(), names[order[r]].end());
+    duplicates.push_back({rare.id, landmarks[survivor].id});
     is_gone[order[r]] = 1;
   }
   std::size_t kept = 0;
@@ -124,31 +120,7 @@ std::vector<MergedLandmark> mergeDuplicates(const DuplicateConfig& config,
     }
   }
   landmarks.resize(kept);
-  return merged;
-}
-
-void joinEarlierLandmark(const MixtureLandmark& earlier, LandmarkId id, std::vector<MixtureLandmark>& landmarks,
-                         std::vector<MergedLandmark>& merged) {
-  const auto find = [&](LandmarkId name) {
-    return std::find_if(landmarks.begin(), landmarks.end(), [&](const auto& landmark) { return landmark.id == name; });
-  };
-  const auto landmark = find(id);
-  if (landmark == landmarks.end()) return;
-  const LandmarkId survivor = survivorOf(merged, earlier.id);
-  const auto named = find(survivor);
-  if (survivor != id && named != landmarks.end()) {
-    absorb(*named, *landmark);
-    landmarks.erase(landmark);
-    merged.push_back({id, survivor});
-    return;
-  }
-  const auto is_of_earlier = [&](const MergedLandmark& step) { return step.merged == earlier.id; };
-  merged.erase(std::remove_if(merged.begin(), merged.end(), is_of_earlier), merged.end());
-  landmark->id = earlier.id;
-  landmark->observations += earlier.observations;
-  landmark->first_submap = std::min(landmark->first_submap, earlier.first_submap);
-  landmark->existence_prob = std::max(landmark->existence_prob, earlier.existence_prob);
-  merged.push_back({id, earlier.id});
+  return duplicates;
 }
 
 }  // namespace semantic_mht_slam

@@ -31,33 +31,33 @@ bool isBefore(const HypothesisLandmark& a, const HypothesisLandmark& b) {
 
 LandmarkPropagation::LandmarkPropagation(const MapperConfig& config)
     : reach_m_(config.detection.max_range_m + config.submap.length_m + config.association.max_gate_m),
-      propagated_submaps_(static_cast<int>(config.submap.propagation_m / config.submap.length_m)) {}
+      propagated_submaps_(static_cast<std::size_t>(config.submap.propagation_m / config.submap.length_m)) {}
 
 void LandmarkPropagation::clear() {
   landmarks_.clear();
   resting_.clear();
 }
 
-void LandmarkPropagation::endSubmap(int submap, const Pose& T_odom_submap,
+void LandmarkPropagation::endSubmap(SubmapId submap, const Pose& T_odom_submap,
                                     const std::vector<MixtureLandmark>& landmarks, const MapHypothesis& best) {
   T_odom_last_ = T_odom_submap;
   last_offset_ = best.offset;
-  const int oldest = submap - propagated_submaps_;
+  const auto goesOn = [&](SubmapId last) { return last.index() + propagated_submaps_ >= submap.index(); };
   landmarks_.clear();
   for (const MixtureLandmark& landmark : landmarks) {
-    if (landmark.last_submap >= oldest) landmarks_.push_back(goingOn(landmark, best));
+    if (goesOn(landmark.last_submap)) landmarks_.push_back(goingOn(landmark, best));
   }
   const auto of_submap = static_cast<std::ptrdiff_t>(landmarks_.size());
   for (HypothesisLandmark& landmark : resting_) {
     const auto end = landmarks_.begin() + of_submap;
     const bool is_known = std::binary_search(landmarks_.begin(), end, landmark, isBefore);
-    if (!is_known && landmark->last_submap >= oldest) landmarks_.push_back(std::move(landmark));
+    if (!is_known && goesOn(landmark->last_submap)) landmarks_.push_back(std::move(landmark));
   }
   resting_.clear();
   std::inplace_merge(landmarks_.begin(), landmarks_.begin() + of_submap, landmarks_.end(), isBefore);
 }
 
-std::vector<HypothesisLandmark> LandmarkPropagation::beginSubmap(int submap, const Pose& T_odom_submap) {
+std::vector<HypothesisLandmark> LandmarkPropagation::beginSubmap(SubmapId submap, const Pose& T_odom_submap) {
   propagate(corrected(T_odom_last_.inverse() * T_odom_submap, last_offset_).inverse());
   std::vector<HypothesisLandmark> near;
   for (HypothesisLandmark& landmark : landmarks_) {
@@ -80,8 +80,8 @@ void LandmarkPropagation::propagate(const Pose& T_new_old) {
 }
 
 /// What was seen in the submap before may be seen from farther away than detections are expected from.
-bool LandmarkPropagation::isOutOfReach(const TrackedLandmark& landmark, int submap) const {
-  return landmark.last_submap < submap - 1 && landmark.position.mean_m.head<2>().norm() > reach_m_;
+bool LandmarkPropagation::isOutOfReach(const TrackedLandmark& landmark, SubmapId submap) const {
+  return landmark.last_submap.index() + 1 < submap.index() && landmark.position.mean_m.head<2>().norm() > reach_m_;
 }
 
 }  // namespace semantic_mht_slam

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <stdexcept>
-#include <string>
 #include <tuple>
 
 #include <Eigen/Geometry>
@@ -48,12 +46,6 @@ void MapBranching::restart(EarlierMap map) {
   std::sort(map_.landmarks.begin(), map_.landmarks.end(),
             [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
   next_attempt_m_ = config_.first_m;
-}
-
-const MixtureLandmark& MapBranching::landmark(LandmarkId id) const {
-  const MixtureLandmark* known = findLandmark(id, map_.landmarks);
-  if (known == nullptr) throw std::out_of_range("the earlier map has no landmark " + std::to_string(id));
-  return *known;
 }
 
 std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const TrackedLandmark*>& landmarks,
@@ -246,18 +238,17 @@ double MapBranching::agreeingWeight(const std::vector<MapHypothesis>& leaves, co
   return weight / (weight + others);
 }
 
-std::optional<MapConclusion> MapBranching::conclude(const std::vector<MapHypothesis>& leaves) const {
+std::optional<MapAlignment> MapBranching::conclude(const std::vector<MapHypothesis>& leaves) const {
   const auto best = std::find_if(leaves.begin(), leaves.end(), [](const auto& leaf) { return leaf.map_offset; });
   if (best == leaves.end()) return std::nullopt;
-  MapConclusion result;
-  MapAlignment& alignment = result.alignment;
+  MapAlignment alignment;
   alignment.T_earlier_submap = poseOf(*best->map_offset);
   alignment.cov = best->map_offset->cov;
   alignment.weight = agreeingWeight(leaves, *best->map_offset, 0.0);
   const AlignmentPrior prior{alignment.T_earlier_submap, kFinal_m, kFinal_m, kFinal_rad};
   std::vector<LandmarkId> ids;
   const auto modes = align(mostSeenLandmarks(*best, 2 * config_.max_landmarks), prior, ids);
-  if (modes.empty()) return result;
+  if (modes.empty()) return alignment;
   const PoseOffset offset = offsetOf(modes.front());
   Matches matches = matchesOf(modes.front(), ids);
   alignment.weight = agreeingWeight(leaves, *best->map_offset, modes.front().log_likelihood);
@@ -265,13 +256,13 @@ std::optional<MapConclusion> MapBranching::conclude(const std::vector<MapHypothe
   alignment.cov = modes.front().cov;
   alignment.matches = static_cast<int>(matches.size());
   alignment.is_accepted = alignment.weight >= config_.accept_prob && alignment.matches >= config_.min_matches;
-  if (!alignment.is_accepted) return result;
+  if (!alignment.is_accepted) return alignment;
   matchTheRest(*best, placementBy(offset), matches);
   for (const auto& [id, earlier] : matches) {
-    const LandmarkId survivor = map_.landmarks[static_cast<std::size_t>(earlier)].id;
-    if (id != survivor && findLandmark(id, map_.landmarks) == nullptr) result.merged.push_back({id, survivor});
+    const LandmarkId known = map_.landmarks[static_cast<std::size_t>(earlier)].id;
+    if (id != known && findLandmark(id, map_.landmarks) == nullptr) alignment.pairs.push_back({id, known});
   }
-  return result;
+  return alignment;
 }
 
 }  // namespace semantic_mht_slam

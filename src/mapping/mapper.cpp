@@ -8,13 +8,14 @@
 #include <utility>
 
 #include "semantic_mht_slam/mapping/fusion.h"
+#include "semantic_mht_slam/mapping/near_landmarks.h"
 
 namespace semantic_mht_slam {
 namespace {
 
 constexpr double kCertainExistence = 0.95;  // of landmarks that tell how often what exists is detected
 constexpr double kCertainClass = 0.99;      // of landmarks that tell what a class is taken for
-constexpr double kKeyframeSpacing_m = 2.0;  // nearer ones see the same error of a centroid
+constexpr double kFrameSpacing_m = 2.0;     // nearer ones see the same error of a centroid
 
 /// Deviations along a ray, across it in the plane and vertically.
 Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& ray_m) {
@@ -24,6 +25,27 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
       planar_m > 0.0 ? Eigen::Vector3d(-ray_m.y() / planar_m, ray_m.x() / planar_m, 0.0) : Eigen::Vector3d::UnitY();
   const Eigen::Vector3d up = along.cross(across);
   return {std::sqrt(along.dot(cov_m2 * along)), std::sqrt(across.dot(cov_m2 * across)), std::sqrt(up.dot(cov_m2 * up))};
+}
+
+/// How far apart parts of one object are shown, squared, in units of the covariance of both centroids: one of the two
+/// may be far off.
+double partsGate(const MapperConfig& config) {
+  const double factor = config.association.outlier_prob > 0.0 ? config.association.outlier_factor : 1.0;
+  return config.duplicates.gate_mahalanobis_sq * 0.5 * (1.0 + factor * factor);
+}
+
+/// Detections belong to the first name of their landmark.
+void useFirstNames(const std::vector<SameLandmark>& duplicates, std::vector<DetectionAssociation>& associations) {
+  std::map<LandmarkId, LandmarkId> first_of;
+  for (auto duplicate = duplicates.rbegin(); duplicate != duplicates.rend();
+       ++duplicate) {  // a first name may go later
+    const auto found = first_of.find(duplicate->second);
+    first_of[duplicate->first] = found == first_of.end() ? duplicate->second : found->second;
+  }
+  for (DetectionAssociation& association : associations) {
+    const auto found = first_of.find(association.landmark);
+    if (found != first_of.end()) association.landmark = found->second;
+  }
 }
 
 }  // namespace
@@ -36,6 +58,15 @@ Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
       tree_(config, classes),
       propagation_(config) {}
 
+Detections Mapper::calibrated(Detections detections) const {
+  for (Detection& detection : detections) {
+    detection = bias_.corrected(detection);
+    detection.cov_m2 = detectorCov(detection);
+  }
+  return detections;
+}
+
+/// Noise of a detection's centroid as it is known now: its own, else the calibrated one. Base frame, m^2.
 Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
   if (detection.cov_m2) return *detection.cov_m2;
   const double range_m = detection.position_m.head<2>().norm();
@@ -92,48 +123,60 @@ void Mapper::learnConfusion(const std::vector<FusedAssociations>& associations,
   std::map<LandmarkId, ClassIndex> certain;
   for (const MixtureLandmark& landmark : landmarks) {
     const bool is_certain = landmark.existence_prob >= kCertainExistence &&
-                            landmark.class_probs.maxCoeff() >= kCertainClass && landmark.last_submap == index_;
+                            landmark.class_probs.maxCoeff() >= kCertainClass && landmark.last_submap == id_;
     if (is_certain) certain[landmark.id] = landmark.mostLikelyClass();
   }
-  for (const Keyframe& keyframe : keyframes_) {
-    const std::vector<LandmarkId>& ids = associations.at(keyframe.place).landmark_of_measurement;
-    for (std::size_t i = 0; i < keyframe.detections.size(); ++i) {
+  for (const std::size_t k : spaced_) {
+    const std::vector<LandmarkId>& ids = associations.at(k).landmark_of_measurement;
+    const Detections& detections = frames_[k].detections;
+    for (std::size_t i = 0; i < detections.size(); ++i) {
       const auto found = certain.find(ids[i]);
-      if (found != certain.end()) tree_.confusion().add(found->second, keyframe.detections[i].class_index);
+      if (found != certain.end()) tree_.confusion().add(found->second, detections[i].class_index);
     }
   }
 }
 
-std::optional<Submap> Mapper::add(std::size_t frame, Stamp stamp, const Pose& T_odom_base, const Detections& detections,
-                                  Rng& rng) {
-  std::optional<Submap> finished;
-  double step_m = 0.0;
-  if (is_open_) {
-    step_m = (T_odom_base.translation_m - T_odom_last_.translation_m).norm();
-    length_m_ += step_m;
-    if (length_m_ >= config_.submap.length_m) finished = finish();
-  }
-  if (!is_open_) begin(stamp, T_odom_base);
-  T_odom_last_ = T_odom_base;
-  end_ = stamp;
+bool Mapper::isFullAt(const Pose& T_odom_base) const {
+  if (frames_.empty()) return false;
+  const double step_m = (T_odom_base.translation_m - frames_.back().T_odom_base.translation_m).norm();
+  return length_m_ + step_m >= config_.submap.length_m;
+}
+
+void Mapper::begin(const Pose& T_odom_submap, EarlierMap earlier_map) {
+  if (is_open_) throw std::logic_error("Mapper: a submap begins in another one");
+  id_ = id_.isNone() ? SubmapId(0) : SubmapId(id_.index() + 1);
+  is_open_ = true;
+  length_m_ = 0.0;
+  frames_.clear();
+  spaced_.clear();
+  T_odom_submap_ = T_odom_submap;
+  if (!config_.alignment.enabled) earlier_map = {};
+  tree_.restart(propagation_.beginSubmap(id_, T_odom_submap_), std::move(earlier_map));
+}
+
+void Mapper::add(Frame frame, Rng& rng) {
+  if (!is_open_) throw std::logic_error("Mapper: a frame between submaps");
   TreeInput input;
-  input.frame = frame;
-  input.submap = index_;
+  if (!frames_.empty()) {
+    input.step_m = (frame.T_odom_base.translation_m - frames_.back().T_odom_base.translation_m).norm();
+  }
+  length_m_ += input.step_m;
+  input.frame = frame.index;
+  input.submap = id_;
   input.driven_m = length_m_;
-  input.step_m = step_m;
-  input.T_submap_base = T_odom_submap_.inverse() * T_odom_base;
-  calibration_.add(T_odom_base, detections);
+  input.T_submap_base = T_submap_base(frame);
+  calibration_.add(frame.T_odom_base, frame.detections);
   noise_of_class_ = {};
-  T_submap_base_.push_back(input.T_submap_base);
-  rows_.emplace_back();
-  for (const Detection& detection : detections) {
+  for (const Detection& detection : frame.detections) {
     input.measurements.push_back(makeMeasurement(detection));
     input.measurements.back().id_if_new = next_landmark_++;
-    rows_.back().push_back(detection.row);
   }
-  keepKeyframe(input.T_submap_base, detections);
+  const auto is_far = [&](const Frame& other) {
+    return (frame.T_odom_base.translation_m - other.T_odom_base.translation_m).norm() >= kFrameSpacing_m;
+  };
+  if (spaced_.empty() || is_far(frames_[spaced_.back()])) spaced_.push_back(frames_.size());
+  frames_.push_back(std::move(frame));
   tree_.step(input, rng);
-  return finished;
 }
 
 void Mapper::forgetSurroundings() {
@@ -142,39 +185,19 @@ void Mapper::forgetSurroundings() {
   calibration_.forgetFrames();
 }
 
-void Mapper::begin(Stamp stamp, const Pose& T_odom_base) {
-  ++index_;
-  is_open_ = true;
-  begin_ = stamp;
-  length_m_ = 0.0;
-  T_submap_base_.clear();
-  rows_.clear();
-  keyframes_.clear();
-  T_odom_submap_ = T_odom_base;
-  const bool is_asked = config_.alignment.enabled && earlier_map_provider_;
-  tree_.restart(propagation_.beginSubmap(index_, T_odom_submap_),
-                is_asked ? earlier_map_provider_(T_odom_submap_) : EarlierMap{});
-}
-
-void Mapper::keepKeyframe(const Pose& T_submap_base, const Detections& detections) {
-  if (!config_.bias.enabled && !learnsConfusion()) return;
-  const bool is_far =
-      keyframes_.empty() ||
-      (T_submap_base.translation_m - keyframes_.back().T_submap_base.translation_m).norm() >= kKeyframeSpacing_m;
-  if (is_far) keyframes_.push_back({rows_.size() - 1, T_submap_base, detections});
-}
-
 void Mapper::learnDetectionRate(const std::vector<FusedAssociations>& associations,
                                 const std::vector<MixtureLandmark>& landmarks) {
+  std::vector<Pose> T_submap_base;
+  for (const Frame& frame : frames_) T_submap_base.push_back(this->T_submap_base(frame));
   std::set<std::pair<LandmarkId, std::size_t>> seen;
   for (std::size_t k = 0; k < associations.size(); ++k) {
     for (const LandmarkId id : associations[k].landmark_of_measurement) seen.emplace(id, k);
   }
   for (const MixtureLandmark& landmark : landmarks) {
-    if (landmark.existence_prob < kCertainExistence || landmark.last_submap != index_) continue;
+    if (landmark.existence_prob < kCertainExistence || landmark.last_submap != id_) continue;
     const ClassIndex class_index = landmark.mostLikelyClass();
-    for (std::size_t k = 0; k < T_submap_base_.size(); ++k) {
-      const Pose& T = T_submap_base_[k];
+    for (std::size_t k = 0; k < T_submap_base.size(); ++k) {
+      const Pose& T = T_submap_base[k];
       const Eigen::Vector3d position_m = T.rotation.conjugate() * (landmark.position.mean_m - T.translation_m);
       tree_.detectionRate().add(class_index, position_m, seen.count({landmark.id, k}) > 0);
     }
@@ -183,66 +206,71 @@ void Mapper::learnDetectionRate(const std::vector<FusedAssociations>& associatio
 
 BiasStretch Mapper::biasStretch(const std::vector<FusedAssociations>& associations) const {
   BiasStretch stretch;
-  for (const Keyframe& keyframe : keyframes_) {
+  for (const std::size_t k : spaced_) {
     const int index = static_cast<int>(stretch.T_stretch_base.size());
-    stretch.T_stretch_base.push_back(keyframe.T_submap_base);
-    const std::vector<LandmarkId>& landmarks = associations.at(keyframe.place).landmark_of_measurement;
-    for (std::size_t i = 0; i < keyframe.detections.size(); ++i) {
+    stretch.T_stretch_base.push_back(T_submap_base(frames_[k]));
+    const std::vector<LandmarkId>& landmarks = associations.at(k).landmark_of_measurement;
+    const Detections& detections = frames_[k].detections;
+    for (std::size_t i = 0; i < detections.size(); ++i) {
       if (landmarks[i] == kNoLandmark) continue;
-      const Detection& detection = keyframe.detections[i];
+      const Detection& detection = detections[i];
       Eigen::Matrix3d cov = detectorCov(detection);
-      cov.diagonal().head<2>().array() +=
-          kKeyframeSpacing_m * calibration_.wanderVariancePerMetre(detection.class_index);
+      cov.diagonal().head<2>().array() += kFrameSpacing_m * calibration_.wanderVariancePerMetre(detection.class_index);
       stretch.observations.push_back({index, detection.position_m, cov, detection.class_index, landmarks[i]});
     }
   }
   return stretch;
 }
 
-void Mapper::joinEarlierMap(std::vector<MixtureLandmark>& landmarks, Submap& submap) const {
-  const std::optional<MapConclusion> conclusion = tree_.mapBranching().conclude(tree_.leaves());
-  if (!conclusion) return;
-  submap.alignment = conclusion->alignment;
-  for (const auto& [id, survivor] : conclusion->merged) {
-    joinEarlierLandmark(tree_.mapBranching().landmark(survivor), id, landmarks, submap.merged);
+/// What a submap teaches about the detector.
+void Mapper::learn(const std::vector<FusedAssociations>& associations, const std::vector<MixtureLandmark>& landmarks) {
+  if (config_.bias.enabled) {
+    bias_.add(biasStretch(associations), config_.submap.odometry_stddev_m, config_.submap.odometry_stddev_rad);
   }
-  std::sort(landmarks.begin(), landmarks.end(),
-            [](const MixtureLandmark& a, const MixtureLandmark& b) { return a.id < b.id; });
+  learnDetectionRate(associations, landmarks);
+  if (learnsConfusion()) learnConfusion(associations, landmarks);
 }
 
-std::optional<Submap> Mapper::finish() {
-  if (!is_open_) return std::nullopt;
+FinishedSubmap Mapper::finish() {
+  if (frames_.empty() || !is_open_) throw std::logic_error("Mapper: there is no submap to finish");
   is_open_ = false;
-  Submap submap;
-  submap.index = index_;
-  submap.begin = begin_;
-  submap.end = end_;
+  FinishedSubmap finished;
+  Submap& submap = finished.submap;
+  submap.id = id_;
+  submap.begin = frames_.front().stamp;
+  submap.end = frames_.back().stamp;
   submap.T_odom_submap = T_odom_submap_;
   const auto fused_associations = fuseAssociations(tree_.leaves());
   for (std::size_t k = 0; k < fused_associations.size(); ++k) {
     const auto& [frame, landmark_of_measurement] = fused_associations[k];
     for (std::size_t i = 0; i < landmark_of_measurement.size(); ++i) {
-      submap.associations.push_back({frame, rows_[k][i], landmark_of_measurement[i]});
+      submap.associations.push_back({frame, frames_[k].detections[i].row, landmark_of_measurement[i]});
     }
   }
-  if (config_.bias.enabled) {
-    bias_.add(biasStretch(fused_associations), config_.submap.odometry_stddev_m, config_.submap.odometry_stddev_rad);
-  }
   std::vector<MixtureLandmark> landmarks = fuseHypotheses(tree_.leaves());
+  learn(fused_associations, landmarks);
+  finished.frames = std::exchange(frames_, {});
+  spaced_.clear();
+  for (Frame& frame : finished.frames) frame.detections = calibrated(std::move(frame.detections));
+  submap.near = findNearLandmarks(finished.frames, submap.associations, partsGate(config_));
+  SideBySide seen;
+  seen.add(submap.associations, submap.near);
   const auto detector_cov = [this](ClassIndex class_index) -> Eigen::Matrix3d {
     const Eigen::Vector3d stddev_m = calibration_.noiseStddev(class_index, 20.0);
     const double horizontal_m = std::max(stddev_m[0], stddev_m[1]);
     return Eigen::Vector3d(horizontal_m, horizontal_m, stddev_m[2]).cwiseAbs2().asDiagonal();
   };
-  learnDetectionRate(fused_associations, landmarks);
-  if (learnsConfusion()) learnConfusion(fused_associations, landmarks);
-  submap.merged = mergeDuplicates(config_.duplicates, fused_associations, detector_cov, landmarks);
-  joinEarlierMap(landmarks, submap);
-  for (const MixtureLandmark& landmark : landmarks) {
-    if (landmark.last_submap == index_) submap.landmarks.push_back(landmark);
+  submap.duplicates = mergeDuplicates(config_.duplicates, fused_associations, seen, detector_cov, landmarks);
+  if (!submap.duplicates.empty()) {
+    useFirstNames(submap.duplicates, submap.associations);
+    submap.near = findNearLandmarks(finished.frames, submap.associations, partsGate(config_));
   }
-  propagation_.endSubmap(index_, T_odom_submap_, landmarks, tree_.leaves().front());
-  return submap;
+  finished.alignment = tree_.mapBranching().conclude(tree_.leaves());
+  for (const MixtureLandmark& landmark : landmarks) {
+    if (landmark.last_submap == id_) submap.landmarks.push_back(landmark);
+  }
+  propagation_.endSubmap(id_, T_odom_submap_, landmarks, tree_.leaves().front());
+  return finished;
 }
 
 }  // namespace semantic_mht_slam

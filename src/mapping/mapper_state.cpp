@@ -110,14 +110,12 @@ void LandmarkPropagation::transfer(StateArchive& archive) {
   transferLandmarks(archive, resting_);
 }
 
-void Mapper::Keyframe::transfer(StateArchive& archive) {
-  archive(place, T_submap_base, detections);
-}
-
 void Mapper::transfer(StateArchive& archive) {
   archive(calibration_, bias_, tree_);
-  archive(next_landmark_, index_, is_open_, begin_, end_, T_odom_submap_, T_odom_last_, length_m_);
-  archive(T_submap_base_, rows_, keyframes_, propagation_);
+  archive(next_landmark_, id_, is_open_, T_odom_submap_, length_m_, frames_, spaced_, propagation_);
+  for (const std::size_t k : spaced_) {
+    if (k >= frames_.size()) StateArchive::fail("a number names no frame of the open submap");
+  }
 }
 
 }  // namespace semantic_mht_slam

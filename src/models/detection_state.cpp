@@ -7,4 +7,9 @@ void transfer(StateArchive& archive, Detection& detection) {
   archive(class_index, position_m, score, cov_m2, size_m, points, is_moving, row);
 }
 
+void transfer(StateArchive& archive, Frame& frame) {
+  auto& [index, stamp, T_odom_base, detections] = frame;
+  archive(index, stamp, T_odom_base, detections);
+}
+
 }  // namespace semantic_mht_slam

@@ -8,8 +8,8 @@
 #include "semantic_mht_slam/app/recording.h"
 #include "semantic_mht_slam/app/simulated_dataset.h"
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/simulation/simulator.h"
-#include "semantic_mht_slam/slam/submap_archive.h"
 
 namespace semantic_mht_slam {
 namespace {

@@ -162,8 +162,8 @@ Landmark toMessage(const MixtureLandmark& landmark, const ClassTable& classes) {
   message.existence_prob = landmark.existence_prob;
   message.observations = static_cast<std::uint32_t>(landmark.observations);
   message.undecided = landmark.isUndecided();
-  message.first_submap = static_cast<std::uint32_t>(landmark.first_submap);
-  message.last_submap = static_cast<std::uint32_t>(landmark.last_submap);
+  message.first_submap = static_cast<std::uint32_t>(landmark.first_submap.index());
+  message.last_submap = static_cast<std::uint32_t>(landmark.last_submap.index());
   message.merged_ids = landmark.merged_ids;
   return message;
 }
@@ -184,12 +184,12 @@ SemanticMap toMessage(Stamp stamp, const std::string& map_frame, const ClassTabl
   return map;
 }
 
-HypothesisTree toMessage(const Frame& frame, const std::string& map_frame, int submap,
+HypothesisTree toMessage(const Frame& frame, const std::string& map_frame, SubmapId submap,
                          const std::vector<MapHypothesis>& leaves) {
   HypothesisTree message;
   message.header.stamp = toRosTime(frame.stamp);
   message.header.frame_id = map_frame;
-  message.submap = static_cast<std::uint32_t>(submap);
+  message.submap = static_cast<std::uint32_t>(submap.index());
   double squares = 0.0;
   for (const MapHypothesis& leaf : leaves) {
     message.hypotheses.emplace_back();

@@ -228,6 +228,9 @@ void findEstimatorFault(const NodeStatus& now, const NodeStatus& before, Finding
   finding.warn(now.estimator.initial_poses_refused > before.estimator.initial_poses_refused,
                "initialpose is refused: " + now.estimator.initial_pose_problem,
                "set localization by set_mode first, and give a finite pose and covariance in the map frame");
+  finding.warn(now.estimator.graph.failures > before.estimator.graph.failures,
+               "the pose graph cannot be solved (" + now.estimator.graph.newest_failure + "): the map stays as it was",
+               "look for jumps of the odometry and for objects at absurd distances; 'reset' begins a new map");
 }
 
 }  // namespace
@@ -244,6 +247,7 @@ void diagnoseEstimator(const NodeStatus& now, const NodeStatus& before, Diagnost
   status.add("landmarks", estimator.landmarks);
   status.add("submaps", estimator.submaps);
   status.add("loops", estimator.loops);
+  status.add("failed solutions of the pose graph", estimator.graph.failures);
   status.add("maps begun", estimator.resets + 1);
   status.add("initial poses refused", estimator.initial_poses_refused);
   status.add("unexpected failures of the input", now.input_failures.count);

@@ -55,26 +55,14 @@ geometry_msgs::Point toPoint(const Eigen::Vector3d& point_m) {
   return point;
 }
 
-/// Index of the finished submap that holds a stamp.
-std::size_t submapAt(const Slam& slam, Stamp stamp) {
-  const auto& submaps = slam.map().submaps();
-  const auto after = std::upper_bound(submaps.begin(), submaps.end(), stamp,
-                                      [](Stamp s, const auto& submap) { return s < submap->begin; });
-  return after == submaps.begin() ? 0 : static_cast<std::size_t>(after - submaps.begin()) - 1;
-}
-
-const MapKeyframe& keyframeOf(const Slam& slam, int index) {
-  return slam.backEnd()->keyframes().keyframes[static_cast<std::size_t>(index)];
-}
-
-LoopClosure toMessage(const Slam& slam, const LoopClosureRecord& record, const std::string& map_frame) {
-  const MapKeyframe& query = keyframeOf(slam, record.query_keyframe);
-  const MapKeyframe& match = keyframeOf(slam, record.match_keyframe);
+LoopClosure toMessage(const Map& map, const LoopClosureRecord& record, const std::string& map_frame) {
+  const Keyframe& query = map.keyframes()[record.query_keyframe];
+  const Keyframe& match = map.keyframes()[record.match_keyframe];
   LoopClosure message;
   message.header.stamp = toRosTime(query.stamp);
   message.header.frame_id = map_frame;
-  message.query_submap = static_cast<std::uint32_t>(submapAt(slam, query.stamp));
-  message.match_submap = static_cast<std::uint32_t>(submapAt(slam, match.stamp));
+  message.query_submap = static_cast<std::uint32_t>(query.submap.index());
+  message.match_submap = static_cast<std::uint32_t>(match.submap.index());
   message.match_stamp = toRosTime(match.stamp);
   message.accepted = record.is_accepted;
   message.reason = record.reason;
@@ -95,12 +83,11 @@ LoopClosure toMessage(const Slam& slam, const LoopClosureRecord& record, const s
 }
 
 /// Submaps that the newest one was compared with.
-std::set<std::size_t> comparedWithNewest(const Slam& slam) {
-  std::set<std::size_t> compared;
-  const std::size_t newest = slam.map().submaps().size() - 1;
-  for (const LoopClosureRecord& record : slam.backEnd()->closures()) {
-    if (submapAt(slam, keyframeOf(slam, record.query_keyframe).stamp) != newest) continue;
-    compared.insert(submapAt(slam, keyframeOf(slam, record.match_keyframe).stamp));
+std::set<SubmapId> comparedWithNewest(const Map& map) {
+  std::set<SubmapId> compared;
+  for (const LoopClosureRecord& record : map.closures()) {
+    const bool is_newest = map.keyframes()[record.query_keyframe].submap == map.keyframes().back().submap;
+    if (is_newest) compared.insert(map.keyframes()[record.match_keyframe].submap);
   }
   return compared;
 }
@@ -126,56 +113,59 @@ void addOutline(const Pose& T_map_submap, const std::vector<Eigen::Vector3d>& po
 
 }  // namespace
 
-std::vector<LoopClosure> toLoopClosures(const Slam& slam, std::size_t first, const std::string& map_frame) {
+std::vector<ClosureId> ClosureNews::takeNews(const Map& map) {
+  std::vector<ClosureId> news;
+  for (const ClosureId id : map.closures().ids()) {
+    const bool is_accepted = map.closures()[id].is_accepted;
+    if (known_.has(id) && known_[id] == is_accepted) continue;
+    news.push_back(id);
+    if (!known_.has(id)) known_.push_back(is_accepted);
+    known_[id] = is_accepted;
+  }
+  return news;
+}
+
+std::vector<LoopClosure> toLoopClosures(const Map& map, const std::vector<ClosureId>& closures,
+                                        const std::string& map_frame) {
   std::vector<LoopClosure> messages;
-  if (slam.backEnd() == nullptr) return messages;
-  const auto& closures = slam.backEnd()->closures();
-  for (std::size_t i = first; i < closures.size(); ++i) messages.push_back(toMessage(slam, closures[i], map_frame));
+  for (const ClosureId id : closures) messages.push_back(toMessage(map, map.closures()[id], map_frame));
   return messages;
 }
 
-std::size_t acceptedClosures(const Slam& slam) {
-  if (slam.backEnd() == nullptr) return 0;
-  const auto& closures = slam.backEnd()->closures();
-  return static_cast<std::size_t>(
-      std::count_if(closures.begin(), closures.end(), [](const auto& record) { return record.is_accepted; }));
+std::size_t acceptedClosures(const Map& map) {
+  return static_cast<std::size_t>(std::count_if(map.closures().begin(), map.closures().end(),
+                                                [](const auto& record) { return record.is_accepted; }));
 }
 
-visualization_msgs::MarkerArray toLoopMarkers(const Slam& slam, const LiveConfig& live, const std::string& map_frame) {
+visualization_msgs::MarkerArray toLoopMarkers(const Map& map, const LiveConfig& live, const std::string& map_frame) {
   visualization_msgs::Marker accepted = makeLines("accepted", visualization_msgs::Marker::LINE_LIST, 1.0, map_frame);
   visualization_msgs::Marker places = makeLines("places", visualization_msgs::Marker::SPHERE_LIST, kPlace_m, map_frame);
   places.scale.y = places.scale.z = kPlace_m;
   visualization_msgs::Marker refused = makeLines("refused", visualization_msgs::Marker::LINE_LIST, 0.3, map_frame);
   accepted.color = places.color = kGreen;
   refused.color = kRed;
-  if (slam.backEnd() != nullptr) {
-    const std::vector<Pose>& T_map_keyframe = slam.backEnd()->keyframes().T_map_keyframe;
-    for (const LoopClosureRecord& record : slam.backEnd()->closures()) {
-      if (!record.is_accepted && !live.refused_closures) continue;
-      visualization_msgs::Marker& marker = record.is_accepted ? accepted : refused;
-      for (const int keyframe : {record.query_keyframe, record.match_keyframe}) {
-        const Eigen::Vector3d& position_m = T_map_keyframe[static_cast<std::size_t>(keyframe)].translation_m;
-        marker.points.push_back(toPoint(position_m + Eigen::Vector3d(0.0, 0.0, kLift_m)));
-      }
-      if (record.is_accepted) places.points.push_back(accepted.points.back());
+  for (const LoopClosureRecord& record : map.closures()) {
+    if (!record.is_accepted && !live.refused_closures) continue;
+    visualization_msgs::Marker& marker = record.is_accepted ? accepted : refused;
+    for (const KeyframeId keyframe : {record.query_keyframe, record.match_keyframe}) {
+      const Eigen::Vector3d& position_m = map.T_map_keyframe(keyframe).translation_m;
+      marker.points.push_back(toPoint(position_m + Eigen::Vector3d(0.0, 0.0, kLift_m)));
     }
+    if (record.is_accepted) places.points.push_back(accepted.points.back());
   }
   return makeArray({accepted, places, refused});
 }
 
-visualization_msgs::MarkerArray toSubmapMarkers(const Slam& slam, const std::string& map_frame) {
+visualization_msgs::MarkerArray toSubmapMarkers(const Map& map, const std::string& map_frame) {
   visualization_msgs::Marker outlines = makeLines("submaps", visualization_msgs::Marker::LINE_LIST, 0.6, map_frame);
-  const auto& submaps = slam.map().submaps();
-  if (slam.backEnd() == nullptr || submaps.empty()) return makeArray({outlines});
-  const KeyframeMap& map = slam.backEnd()->keyframes();
-  std::vector<std::vector<Eigen::Vector3d>> positions_m(submaps.size());
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    positions_m[submapAt(slam, map.keyframes[k].stamp)].push_back(map.T_map_keyframe[k].translation_m);
-  }
-  const std::set<std::size_t> compared = comparedWithNewest(slam);
-  for (std::size_t i = 0; i < submaps.size(); ++i) {
-    addOutline(slam.backEnd()->T_map_submap(static_cast<int>(i)), positions_m[i], outlines,
-               compared.count(i) > 0 ? kOrange : kGrey);
+  if (map.submaps().empty()) return makeArray({outlines});
+  const std::set<SubmapId> compared = comparedWithNewest(map);
+  for (const SubmapId submap : map.submaps().ids()) {
+    std::vector<Eigen::Vector3d> positions_m;
+    for (const KeyframeId keyframe : map.keyframesOf(submap)) {
+      positions_m.push_back(map.T_map_keyframe(keyframe).translation_m);
+    }
+    addOutline(map.T_map_submap(submap), positions_m, outlines, compared.count(submap) > 0 ? kOrange : kGrey);
   }
   return makeArray({outlines});
 }

@@ -169,8 +169,8 @@ class MapReader {
 }  // namespace
 
 SavedMap mapOf(const Slam& slam, const std::function<void()>& on_copied) {
-  SavedMap map{slam.snapshot(), slam.landmarks(), {}, slam.map().submaps().size()};
-  const TrajectoryRecord record = slam.trajectoryRecord();
+  SavedMap map{slam.snapshot(), landmarksOf(slam), {}, slam.map().submaps().size()};
+  const TrajectoryRecord record = trajectoryRecordOf(slam);
   on_copied();
   map.trajectory = trajectoryOf(record);
   return map;

@@ -115,11 +115,11 @@ void SlamNode::handleSafely(const InputMessage& message) {
 
 void SlamNode::handleTimed(const InputMessage& message) {
   using Clock = std::chrono::steady_clock;
-  const std::size_t frames = slam_->counters().frames;
+  const std::size_t frames = slam_->parts().assembler.counters().frames;
   const Clock::time_point begin = Clock::now();
   std::visit([this](const auto& pointer) { handle(*pointer); }, message);
   const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-  if (slam_->counters().frames == frames) return;
+  if (slam_->parts().assembler.counters().frames == frames) return;
   const std::lock_guard<std::mutex> status_lock(status_mutex_);
   frame_timer_.add(time_ms);
 }
@@ -153,7 +153,7 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
   const std::vector<nav_msgs::Odometry> usable = gate_.pass(message, latest, estimator_.refused);
   if (usable.empty()) return;  // until the next message tells whether time jumped
   if (usable.size() > 1 && toStamp(usable.front().header.stamp) < *latest) {
-    const bool keeps_map = slam_->isLocalizing();
+    const bool keeps_map = isLocalizing(slam_->mode());
     ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latest), message.header.stamp.toSec(),
              keeps_map ? "looking for the place in the map" : "starting a new map");
     keeps_map ? slam_->beginSession() : startAgain();
@@ -164,7 +164,7 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
 
 void SlamNode::beginSessionUnlessGoingOn(const nav_msgs::Odometry& message) {
   const StampedPose next{toStamp(message.header.stamp), fromMessage(message.pose.pose)};
-  const std::optional<StampedPose> last = slam_->latestOdometry();
+  const std::optional<StampedPose> last = slam_->parts().sessions.latestOdometry();
   if (last && goesOn(*last, next)) return;
   ROS_INFO("the odometry does not go on where the loaded map ends: looking for the place in the map");
   slam_->beginSession();
@@ -173,12 +173,12 @@ void SlamNode::beginSessionUnlessGoingOn(const nav_msgs::Odometry& message) {
 void SlamNode::process(const nav_msgs::Odometry& message) {
   if (!slam_->addOdometry({toStamp(message.header.stamp), fromMessage(message.pose.pose)})) return;
   const LiveConfig live = live_.get();
-  if (slam_->isLocated()) publisher_.publishPose(*slam_, live);
+  if (isLocated(slam_->mode())) publisher_.publishPose(*slam_, live);
   publisher_.publishFrame(*slam_, live);
 }
 
 std::optional<Stamp> SlamNode::latestStamp() const {
-  const std::optional<StampedPose> latest = slam_->latestPose();
+  const std::optional<StampedPose> latest = latestPoseOf(*slam_);
   return latest ? std::optional(latest->stamp) : std::nullopt;
 }
 
@@ -239,15 +239,16 @@ void SlamNode::add(const SemanticObjectArray& message, const Pose& T_base_sensor
 }
 
 void SlamNode::noteStatus() {
-  estimator_.counters = slam_->counters();
+  estimator_.counters = slam_->parts().assembler.counters();
   estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
-  if (!slam_->isLocated()) estimator_.mode += ", lost";
-  if (slam_->isFollowing()) estimator_.mode += ", known place";
+  if (!isLocated(slam_->mode())) estimator_.mode += ", lost";
+  if (isFollowing(slam_->mode())) estimator_.mode += ", known place";
   if (is_paused_) estimator_.mode += ", paused";
-  estimator_.hypotheses = slam_->hypotheses().size();
+  estimator_.hypotheses = hypothesesOf(*slam_).size();
   estimator_.submaps = slam_->map().submaps().size();
   estimator_.landmarks = publisher_.landmarks();
   estimator_.loops = publisher_.loops();
+  estimator_.graph = slam_->parts().graph.status();
   const std::lock_guard<std::mutex> lock(status_mutex_);
   noted_estimator_ = estimator_;
 }
@@ -259,10 +260,10 @@ void SlamNode::publishSlowTopics() {
     publisher_.publishMapMarkers(*slam_, live_.get());
   }
   const ros::WallTime begin = ros::WallTime::now();
-  if (slam_->counters().odometry == published_odometry_ || begin < next_trajectory_) return;
-  published_odometry_ = slam_->counters().odometry;
+  if (slam_->parts().assembler.counters().odometry == published_odometry_ || begin < next_trajectory_) return;
+  published_odometry_ = slam_->parts().assembler.counters().odometry;
   const SlamPublisher::TrajectoryTurn turn = publisher_.takeTrajectoryTurn();
-  const TrajectoryRecord record = slam_->trajectoryRecord();
+  const TrajectoryRecord record = trajectoryRecordOf(*slam_);
   const std::vector<Pose> odometry = publisher_.odometry();
   lock.unlock();  // the trajectory of a long drive and its messages take a while to make
   publisher_.publishTrajectory(turn, trajectoryOf(record), odometry);

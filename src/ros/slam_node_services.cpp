@@ -149,14 +149,15 @@ bool SlamNode::setMode(SetMode::Request& request, SetMode::Response& response) {
       slam_->resumeMapping();
       is_localization_wanted_ = false;
       response.success = true;
-      response.message = slam_->isLocated() ? "mapping" : "mapping, as soon as the vehicle has found itself in the map";
+      response.message =
+          isLocated(slam_->mode()) ? "mapping" : "mapping, as soon as the vehicle has found itself in the map";
     } else if (request.mode == SetMode::Request::LOCALIZATION) {
       try {
         slam_->localize();
         is_localization_wanted_ = true;
         response.success = true;
         response.message =
-            slam_->isLocated() ? "localization" : "localization; the vehicle looks for itself in the map";
+            isLocated(slam_->mode()) ? "localization" : "localization; the vehicle looks for itself in the map";
         publisher_.publishMap(*slam_, live_.get());
       } catch (const std::logic_error&) {
         response.message = "there is no map yet that one could find oneself in; the node goes on mapping";

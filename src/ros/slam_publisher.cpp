@@ -34,7 +34,7 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
       map_publisher_(handle.advertise<SemanticMap>("map", 1, true)) {}
 
 void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
-  const StampedPose latest = *slam.latestPose();
+  const StampedPose latest = *latestPoseOf(slam);
   T_map_odom_ = slam.T_map_odom();
   const Pose T_odom_base = T_map_odom_->inverse() * latest.T_world_base;
   if (odometry_.empty() || (odometry_.back().translation_m - T_odom_base.translation_m).norm() > kOdometrySpacing_m) {
@@ -63,32 +63,33 @@ void SlamPublisher::sendPose(const StampedPose& T_map_base, const Pose& T_odom_b
 }
 
 void SlamPublisher::publishFrame(const Slam& slam, const LiveConfig& live) {
-  const std::optional<Frame>& frame = slam.latestFrame();
+  const std::optional<Frame>& frame = slam.parts().latest_frame;
   if (!frame || frame->stamp == published_frame_) return;
   published_frame_ = frame->stamp;
   objects_publisher_.publish(toObjectMarkers(*frame, slam.T_map_odom(), classes_, config_.map_frame));
-  if (slam.hypotheses().empty()) return;
-  hypotheses_publisher_.publish(toMessage(*frame, config_.map_frame, slam.submapIndex(), slam.hypotheses()));
+  if (hypothesesOf(slam).empty()) return;
+  hypotheses_publisher_.publish(
+      toMessage(*frame, config_.map_frame, slam.parts().mapper->submap(), hypothesesOf(slam)));
   if (slam.map().submaps().size() != published_submaps_) publishMap(slam, live);
 }
 
 void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {
   published_submaps_ = slam.map().submaps().size();
-  const Stamp stamp = slam.latestFrame() ? slam.latestFrame()->stamp : 0;
-  map_ = toMessage(stamp, config_.map_frame, classes_, slam.landmarks(), published_submaps_);
+  const Stamp stamp = slam.parts().latest_frame ? slam.parts().latest_frame->stamp : 0;
+  map_ = toMessage(stamp, config_.map_frame, classes_, landmarksOf(slam), published_submaps_);
   map_publisher_.publish(map_);
-  for (const LoopClosure& closure : toLoopClosures(slam, published_closures_, config_.map_frame)) {
+  const std::vector<ClosureId> news = closures_.takeNews(slam.map());
+  for (const LoopClosure& closure : toLoopClosures(slam.map(), news, config_.map_frame)) {
     closures_publisher_.publish(closure);
-    ++published_closures_;
   }
-  loops_ = acceptedClosures(slam);
+  loops_ = acceptedClosures(slam.map());
   publishMapMarkers(slam, live);
 }
 
 void SlamPublisher::publishMapMarkers(const Slam& slam, const LiveConfig& live) {
   landmarks_publisher_.publish(toLandmarkMarkers(map_, classes_, live));
-  loops_publisher_.publish(toLoopMarkers(slam, live, config_.map_frame));
-  submaps_publisher_.publish(toSubmapMarkers(slam, config_.map_frame));
+  loops_publisher_.publish(toLoopMarkers(slam.map(), live, config_.map_frame));
+  submaps_publisher_.publish(toSubmapMarkers(slam.map(), config_.map_frame));
 }
 
 void SlamPublisher::publishTrajectory(const TrajectoryTurn& turn, const std::vector<StampedPose>& trajectory,
@@ -108,19 +109,19 @@ void SlamPublisher::startAgain(const Slam& slam) {
   T_map_odom_.reset();
   published_frame_.reset();
   published_submaps_ = 0;
-  published_closures_ = 0;
+  closures_ = {};
   loops_ = 0;
   odometry_.clear();
   map_ = toMessage(0, config_.map_frame, classes_, {}, 0);
   map_publisher_.publish(map_);
   publishMapMarkers(slam, {});
   publishTrajectory(takeTrajectoryTurn(), {}, {});
-  hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, 0, {}));
+  hypotheses_publisher_.publish(toMessage(Frame{}, config_.map_frame, SubmapId(0), {}));
 }
 
 void SlamPublisher::showLoaded(const Slam& slam, const LiveConfig& live) {
   startAgain(slam);
-  if (slam.backEnd() != nullptr) published_closures_ = slam.backEnd()->closures().size();  // were published long ago
+  closures_.takeNews(slam.map());  // were published long ago
   publishMap(slam, live);
 }
 

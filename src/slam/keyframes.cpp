@@ -6,8 +6,6 @@
 
 #include <Eigen/LU>
 
-#include "semantic_mht_slam/map/merged_ids.h"
-
 namespace semantic_mht_slam {
 namespace {
 
@@ -26,10 +24,8 @@ class KeptLandmarks {
     for (const MixtureLandmark& landmark : submap.landmarks) {
       if (landmark.existence_prob >= keep_prob) by_id_[landmark.id] = &landmark;
     }
-    MergedIds merged_ids;
-    for (const auto& [merged, survivor] : submap.merged) merged_ids.merge(merged, survivor);
     for (const DetectionAssociation& association : submap.associations) {
-      const auto found = by_id_.find(merged_ids.resolve(association.landmark));
+      const auto found = by_id_.find(association.landmark);
       if (found != by_id_.end()) of_detection_[{association.frame, association.row}] = found->second;
     }
   }
@@ -48,19 +44,19 @@ class KeptLandmarks {
 /// Collects what one keyframe sees.
 class SightingCollector {
  public:
-  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const SightingNoise& noise,
+  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const OdometryNoise& odometry,
                     const KeyframeConfig& config)
       : T_keyframe_odom_(T_odom_keyframe.inverse()),
         T_keyframe_submap_(T_keyframe_odom_ * T_odom_submap),
-        noise_(noise),
+        odometry_(odometry),
         config_(config) {}
 
   void add(const MixtureLandmark& landmark, const Pose& T_odom_base, double distance_m, const Detection& detection) {
     const Pose T_keyframe_base = T_keyframe_odom_ * T_odom_base;
     const Eigen::Matrix3d R = T_keyframe_base.rotation.toRotationMatrix();
-    const double lever_m = detection.position_m.norm() * noise_.odometry.stddev_rad;
-    const double drift_m2 = distance_m * (noise_.odometry.stddev_m * noise_.odometry.stddev_m + lever_m * lever_m);
-    const Eigen::Matrix3d cov = R * noise_.detector(detection) * R.transpose() + drift_m2 * Eigen::Matrix3d::Identity();
+    const double lever_m = detection.position_m.norm() * odometry_.stddev_rad;
+    const double drift_m2 = distance_m * (odometry_.stddev_m * odometry_.stddev_m + lever_m * lever_m);
+    const Eigen::Matrix3d cov = R * detection.cov_m2.value() * R.transpose() + drift_m2 * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d information = cov.inverse();
     WeightedSum& sum = sums_[landmark.id];
     sum.landmark = &landmark;
@@ -69,7 +65,7 @@ class SightingCollector {
     ++sum.count;
   }
 
-  void writeTo(MapKeyframe& keyframe) const {
+  void writeTo(CutSubmap& cut) const {
     const Eigen::Matrix3d floor =
         Eigen::Vector3d(config_.sighting_floor_m, config_.sighting_floor_m, config_.vertical_floor_m)
             .cwiseAbs2()
@@ -77,16 +73,17 @@ class SightingCollector {
     for (const auto& [id, sum] : sums_) {
       const Eigen::Matrix3d cov = sum.information.inverse();
       const ClassIndex class_index = sum.landmark->mostLikelyClass();
-      keyframe.sightings.push_back(
+      cut.sightings.back().push_back(
           {id, class_index, cov * sum.weighted, 0.5 * (cov + cov.transpose()) + floor, sum.count});
-      keyframe.scene.objects.push_back(sceneObject(*sum.landmark, T_keyframe_submap_, config_.sighting_floor_m));
+      cut.keyframes.back().scene.objects.push_back(
+          sceneObject(*sum.landmark, T_keyframe_submap_, config_.sighting_floor_m));
     }
   }
 
  private:
   Pose T_keyframe_odom_;
   Pose T_keyframe_submap_;
-  const SightingNoise& noise_;
+  const OdometryNoise& odometry_;
   const KeyframeConfig& config_;
   std::map<LandmarkId, WeightedSum> sums_;
 };
@@ -101,36 +98,29 @@ void describe(KeyframeConfig& config, Fields& fields) {
              "The same for its height: of trunks and poles a sensor sees another part from each distance.");
 }
 
-SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_submap, double floor_m) {
-  const Eigen::Matrix3d R = T_keyframe_submap.rotation.toRotationMatrix();
-  const Eigen::Matrix3d cov = R * landmark.position.cov_m2 * R.transpose();
-  return {T_keyframe_submap * landmark.position.mean_m,
-          0.5 * (cov + cov.transpose()) + floor_m * floor_m * Eigen::Matrix3d::Identity(), landmark.mostLikelyClass(),
-          landmark.id};
-}
-
-std::vector<MapKeyframe> cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m,
-                                          double keep_prob, const SightingNoise& noise, const KeyframeConfig& config) {
+CutSubmap cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m, double keep_prob,
+                           const OdometryNoise& odometry, const KeyframeConfig& config) {
   const KeptLandmarks landmarks(submap, keep_prob);
-  std::vector<MapKeyframe> keyframes;
+  CutSubmap cut;
   std::optional<SightingCollector> collector;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Frame& frame = frames[i];
     if (i > 0) driven_m += (frame.T_odom_base.translation_m - frames[i - 1].T_odom_base.translation_m).norm();
-    if (keyframes.empty() || driven_m - keyframes.back().driven_m >= config.spacing_m) {
-      if (collector) collector->writeTo(keyframes.back());
-      keyframes.push_back({frame.index, frame.stamp, driven_m, frame.T_odom_base, {}, {}});
-      collector.emplace(frame.T_odom_base, submap.T_odom_submap, noise, config);
+    if (cut.keyframes.empty() || driven_m - cut.keyframes.back().driven_m >= config.spacing_m) {
+      if (collector) collector->writeTo(cut);
+      cut.keyframes.push_back({frame.index, submap.id, driven_m, {}, frame.stamp, frame.T_odom_base});
+      cut.sightings.emplace_back();
+      collector.emplace(frame.T_odom_base, submap.T_odom_submap, odometry, config);
     }
     for (const Detection& detection : frame.detections) {
       const MixtureLandmark* landmark = landmarks.of(frame.index, detection.row);
       if (landmark == nullptr) continue;
-      const double distance_m = driven_m - keyframes.back().driven_m;
+      const double distance_m = driven_m - cut.keyframes.back().driven_m;
       collector->add(*landmark, frame.T_odom_base, distance_m, detection);
     }
   }
-  if (collector) collector->writeTo(keyframes.back());
-  return keyframes;
+  if (collector) collector->writeTo(cut);
+  return cut;
 }
 
 }  // namespace semantic_mht_slam

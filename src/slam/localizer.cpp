@@ -9,6 +9,12 @@ namespace {
 
 constexpr std::size_t kMinObjects = 6;
 
+/// After what distance a pose is uncertain by `stddev_m`.
+double driftOf(double stddev_m, const RevisitConfig& config) {
+  const double grown_m = std::max(0.0, stddev_m - config.base_stddev_m);
+  return config.drift_per_m > 0.0 ? grown_m / config.drift_per_m : 0.0;
+}
+
 }  // namespace
 
 void describe(LocalizerConfig& config, Fields& fields) {
@@ -30,11 +36,10 @@ void Localizer::expectAt(const Pose& T_map_odom, double stddev_m) {
   is_located_ = true;
   T_map_odom_ = T_map_odom;
   fixed_m_ = driven_m_;
-  const RevisitConfig noise;
-  prior_drift_m_ = std::max(0.0, (stddev_m - noise.base_stddev_m) / noise.drift_per_m);
+  prior_drift_m_ = driftOf(stddev_m, revisit_config_);
 }
 
-bool Localizer::add(const Frame& frame, const BackEnd& map) {
+bool Localizer::add(const Frame& frame, const Map& map, const LoopCloser& closer) {
   if (!window_.empty()) {
     driven_m_ += (frame.T_odom_base.translation_m - window_.back().T_odom_base.translation_m).norm();
   }
@@ -47,9 +52,9 @@ bool Localizer::add(const Frame& frame, const BackEnd& map) {
   if (driven_m_ - attempted_m_ < config_.step_m) return false;
   attempted_m_ = driven_m_;
   if (is_located_ && driven_m_ - fixed_m_ > config_.lost_after_m) is_located_ = false;
-  const Scene seen = scene(map.classes());
+  const Scene seen = scene(closer.classes());
   if (seen.objects.size() < kMinObjects) return false;
-  return is_located_ ? track(seen, map) : search(seen, map);
+  return is_located_ ? track(seen, map, closer) : search(seen, map, closer);
 }
 
 Scene Localizer::scene(const ClassTable& classes) const {
@@ -73,8 +78,8 @@ bool Localizer::agree(const Find& a, const Find& b) const {
          angularDistance(by_a.rotation, by_b.rotation) < config_.agree_rad;
 }
 
-bool Localizer::search(const Scene& seen, const BackEnd& map) {
-  const std::optional<Pose> T_map_base = map.locate(seen);
+bool Localizer::search(const Scene& seen, const Map& map, const LoopCloser& closer) {
+  const std::optional<Pose> T_map_base = closer.locate(map, seen);
   if (!T_map_base) return false;
   const Find find{driven_m_, *T_map_base * window_.back().T_odom_base.inverse()};
   const bool is_confirmed =
@@ -88,9 +93,9 @@ bool Localizer::search(const Scene& seen, const BackEnd& map) {
   return true;
 }
 
-bool Localizer::track(const Scene& seen, const BackEnd& map) {
+bool Localizer::track(const Scene& seen, const Map& map, const LoopCloser& closer) {
   const Pose T_map_base = *T_map_odom_ * window_.back().T_odom_base;
-  const std::optional<Pose> found = map.findNear(seen, T_map_base, driven_m_ - fixed_m_ + prior_drift_m_);
+  const std::optional<Pose> found = closer.findNear(map, seen, T_map_base, driven_m_ - fixed_m_ + prior_drift_m_);
   if (!found) return false;
   settle(*found * window_.back().T_odom_base.inverse());
   return true;

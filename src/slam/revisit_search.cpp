@@ -28,38 +28,39 @@ AlignmentPoint moved(const Pose& T_a_b, const SceneObject& object) {
 /// What one earlier drive past a place saw there. Each pass has only its own, local odometry error in it, whatever the
 /// drift between passes.
 struct Pass {
-  std::vector<int> keyframes;
+  std::vector<KeyframeId> keyframes;
   std::vector<LandmarkId> ids;
   std::vector<AlignmentPoint> points;
 };
 
 /// Runs of successive keyframes among the first `end` that are near a position.
-std::vector<std::vector<int>> runsWithin(double radius_m, const Eigen::Vector3d& position_m, const KeyframeMap& map,
-                                         std::size_t end) {
-  std::vector<std::vector<int>> runs;
-  for (std::size_t k = 0; k < end; ++k) {
-    const Eigen::Vector3d offset = map.T_map_keyframe[k].translation_m - position_m;
+std::vector<std::vector<KeyframeId>> runsWithin(double radius_m, const Eigen::Vector3d& position_m, const Map& map,
+                                                KeyframeId end) {
+  std::vector<std::vector<KeyframeId>> runs;
+  KeyframeId next;  // of the run
+  for (KeyframeId k(0); k < end; ++k) {
+    const Eigen::Vector3d offset = map.T_map_keyframe(k).translation_m - position_m;
     if (offset.head<2>().norm() > radius_m) continue;
-    const int keyframe = static_cast<int>(k);
-    if (runs.empty() || runs.back().back() + 1 != keyframe) runs.emplace_back();
-    runs.back().push_back(keyframe);
+    if (k != next) runs.emplace_back();
+    runs.back().push_back(k);
+    next = k;
+    ++next;
   }
   return runs;
 }
 
 /// The same near the pose that is expected.
-std::vector<std::vector<int>> runsNear(const KeyframeMap& map, std::size_t end, const AlignmentPrior& prior,
-                                       const RevisitConfig& config) {
+std::vector<std::vector<KeyframeId>> runsNear(const Map& map, KeyframeId end, const AlignmentPrior& prior,
+                                              const RevisitConfig& config) {
   const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
   return runsWithin(radius_m, prior.T_a_b.translation_m, map, end);
 }
 
-Pass makePass(const KeyframeMap& map, const std::vector<int>& keyframes) {
+Pass makePass(const Map& map, const std::vector<KeyframeId>& keyframes) {
   std::map<LandmarkId, EarlierLandmark> landmarks;
-  for (const int k : keyframes) {
-    const auto keyframe = static_cast<std::size_t>(k);
-    for (const SceneObject& object : map.keyframes[keyframe].scene.objects) {
-      const AlignmentPoint point = moved(map.T_map_keyframe[keyframe], object);
+  for (const KeyframeId keyframe : keyframes) {
+    for (const SceneObject& object : map.keyframes()[keyframe].scene.objects) {
+      const AlignmentPoint point = moved(map.T_map_keyframe(keyframe), object);
       EarlierLandmark& landmark = landmarks[object.landmark];
       if (++landmark.sightings == 1) {
         landmark.point = point;
@@ -86,7 +87,7 @@ RefinedPose refined(const AlignmentHypothesis& alignment, const std::vector<Alig
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const int j = alignment.landmark_for_detection[i];
     if (j < 0) continue;
-    const AlignmentPoint& landmark = pass.points[static_cast<std::size_t>(j)];
+    const AlignmentPoint& landmark = pass.points[j];
     PointPair pair{seen[i].position_m, landmark.position_m, R * seen[i].cov_m2 * R.transpose() + landmark.cov_m2};
     pair.cov_m2.diagonal().array() += floor_m2;
     pair.cov_m2(2, 2) += config.height_stddev_m * config.height_stddev_m;
@@ -95,17 +96,15 @@ RefinedPose refined(const AlignmentHypothesis& alignment, const std::vector<Alig
   return refinePose(alignment.T_a_b, pairs, config.alignment.tilt_stddev_rad, kHuberSigma, floor_m2);
 }
 
-int nearestKeyframe(const KeyframeMap& map, const std::vector<int>& keyframes, const Eigen::Vector3d& position_m) {
-  return *std::min_element(keyframes.begin(), keyframes.end(), [&](int a, int b) {
-    const auto distance = [&](int k) {
-      return (map.T_map_keyframe[static_cast<std::size_t>(k)].translation_m - position_m).squaredNorm();
-    };
-    return distance(a) < distance(b);
-  });
+KeyframeId nearestKeyframe(const Map& map, const std::vector<KeyframeId>& keyframes,
+                           const Eigen::Vector3d& position_m) {
+  const auto distance = [&](KeyframeId k) { return (map.T_map_keyframe(k).translation_m - position_m).squaredNorm(); };
+  return *std::min_element(keyframes.begin(), keyframes.end(),
+                           [&](KeyframeId a, KeyframeId b) { return distance(a) < distance(b); });
 }
 
 /// One record of laying a scene onto a pass; empty if nothing fits.
-std::optional<LoopClosureRecord> layOnto(const KeyframeMap& map, const std::vector<int>& run, const Scene& scene,
+std::optional<LoopClosureRecord> layOnto(const Map& map, const std::vector<KeyframeId>& run, const Scene& scene,
                                          const AlignmentPrior& prior, const ClassTable& classes,
                                          const RevisitConfig& config) {
   std::vector<AlignmentPoint> seen;
@@ -117,27 +116,25 @@ std::optional<LoopClosureRecord> layOnto(const KeyframeMap& map, const std::vect
   if (modes.empty()) return std::nullopt;
   const AlignmentHypothesis& best = modes.front();
   LoopClosureRecord record;
-  record.query_keyframe = -1;
   const RefinedPose pose = refined(best, seen, pass, config);
   record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
-  record.T_match_query = map.T_map_keyframe[static_cast<std::size_t>(record.match_keyframe)].inverse() * pose.T_a_b;
+  record.T_match_query = map.T_map_keyframe(record.match_keyframe).inverse() * pose.T_a_b;
   record.cov = pose.cov;
   record.score = best.log_likelihood;
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const int j = best.landmark_for_detection[i];
     if (j < 0) continue;
-    const Eigen::Vector3d apart_m =
-        pose.T_a_b * seen[i].position_m - pass.points[static_cast<std::size_t>(j)].position_m;
+    const Eigen::Vector3d apart_m = pose.T_a_b * seen[i].position_m - pass.points[j].position_m;
     if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
     ++record.inliers;
-    record.pairs.push_back({scene.objects[i].landmark, pass.ids[static_cast<std::size_t>(j)]});
+    record.pairs.push_back({scene.objects[i].landmark, pass.ids[j]});
   }
   if (best.log_likelihood < config.min_log_evidence) {
     record.reason = "too little evidence";
   } else if (modes.size() > 1 && best.log_likelihood - modes[1].log_likelihood < config.min_log_margin) {
     record.reason = "ambiguous";
   }
-  record.is_accepted = record.reason.empty();
+  record.is_verified = record.reason.empty();
   return record;
 }
 
@@ -170,8 +167,8 @@ void describe(RevisitConfig& config, Fields& fields) {
   fields.group("alignment", config.alignment);
 }
 
-int passesAt(const KeyframeMap& map, const Eigen::Vector3d& position_m) {
-  return static_cast<int>(runsWithin(kSamePlace_m, position_m, map, map.keyframes.size()).size());
+std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m) {
+  return runsWithin(kSamePlace_m, position_m, map, map.keyframes().nextId()).size();
 }
 
 AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config) {
@@ -183,26 +180,24 @@ AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const Revisi
   return prior;
 }
 
-std::vector<LoopClosureRecord> findInMap(const KeyframeMap& map, const Scene& scene, const AlignmentPrior& prior,
+std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const AlignmentPrior& prior,
                                          const ClassTable& classes, const RevisitConfig& config) {
   std::vector<LoopClosureRecord> records;
-  for (const std::vector<int>& run : runsNear(map, map.keyframes.size(), prior, config)) {
+  for (const std::vector<KeyframeId>& run : runsNear(map, map.keyframes().nextId(), prior, config)) {
     if (auto record = layOnto(map, run, scene, prior, classes, config)) records.push_back(std::move(*record));
   }
   return records;
 }
 
-std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
+std::vector<LoopClosureRecord> findRevisits(const Map& map, KeyframeId query, double drifted_m,
                                             const ClassTable& classes, const RevisitConfig& config) {
-  const auto q = static_cast<std::size_t>(query);
-  const AlignmentPrior prior = driftPrior(map.T_map_keyframe[q], drifted_m, config);
-  const double latest_m = map.keyframes[q].driven_m - config.min_driven_m;
-  const auto end = std::upper_bound(map.keyframes.begin(), map.keyframes.begin() + query, latest_m,
-                                    [](double m, const MapKeyframe& keyframe) { return m < keyframe.driven_m; });
+  const Keyframe& asked = map.keyframes()[query];
+  const AlignmentPrior prior = driftPrior(map.T_map_keyframe(query), drifted_m, config);
+  KeyframeId end(0);
+  while (end < query && map.keyframes()[end].driven_m <= asked.driven_m - config.min_driven_m) ++end;
   std::vector<LoopClosureRecord> records;
-  for (const std::vector<int>& run :
-       runsNear(map, static_cast<std::size_t>(end - map.keyframes.begin()), prior, config)) {
-    auto record = layOnto(map, run, map.keyframes[q].scene, prior, classes, config);
+  for (const std::vector<KeyframeId>& run : runsNear(map, end, prior, config)) {
+    auto record = layOnto(map, run, asked.scene, prior, classes, config);
     if (!record) continue;
     record->query_keyframe = query;
     records.push_back(std::move(*record));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/stopwatch.h"
+#include "semantic_mht_slam/slam/surroundings.h"
 
 namespace semantic_mht_slam {
 
@@ -14,8 +15,45 @@ namespace {
 const std::vector<std::pair<std::string, Method>> kMethods = {
     {"odometry", Method::kOdometry}, {"ukf", Method::kUkf}, {"mhm", Method::kMhm}, {"dpmhm", Method::kDpmhm}};
 
-constexpr double kSensorReach_m = 60.0;
-constexpr double kGraphShift_m = 10.0;  // as far as the graph may move a landmark in its submap
+/// Driven between two sessions, for whoever takes what was driven lately for one pass.
+constexpr double kBetweenSessions_m = 1000.0;
+
+/// Followed without a fix before the place counts as one that changed, and is mapped again.
+constexpr double kFollowed_m = 20.0;
+
+constexpr double kMaxPause_s = 60.0;
+constexpr double kMaxSpeed_m_s = 60.0;
+
+/// Solutions after one that took closures back, so that what they had joined comes apart.
+constexpr int kMoreSolutions = 3;
+
+OdometryNoise odometryNoiseOf(const SubmapConfig& submap) {
+  return {submap.odometry_stddev_m, submap.odometry_stddev_rad};
+}
+
+/// Submaps whose landmarks the mapper itself may carry on into the present one.
+std::size_t recentSubmaps(const SlamConfig& config) {
+  const SubmapConfig& submap = config.mapper.submap;
+  const double recent_m = std::max(config.back_end.revisit.min_driven_m, submap.propagation_m);
+  return static_cast<std::size_t>(recent_m / submap.length_m) + 2;
+}
+
+SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
+  SlamParts parts{FrameAssembler(config.input),
+                  Rng(config.seed),
+                  {},
+                  Map(config.mapper.detection.keep_prob),
+                  MapGraph(config.back_end, odometryNoiseOf(config.mapper.submap), classes),
+                  {},
+                  {},
+                  {},
+                  {},
+                  {}};
+  if (config.method == Method::kOdometry) return parts;
+  parts.mapper.emplace(config.mapper, classes);
+  parts.closer.emplace(config.back_end, classes);
+  return parts;
+}
 
 }  // namespace
 
@@ -44,140 +82,201 @@ void describe(SlamConfig& config, Fields& fields) {
   fields.group("localization", config.localization);
 }
 
-Slam::Slam(const SlamConfig& config, const ClassTable& classes)
-    : method_(config.method),
-      assembler_(config.input),
-      rng_(config.seed),
-      odometry_noise_{config.mapper.submap.odometry_stddev_m, config.mapper.submap.odometry_stddev_rad},
-      keyframe_config_(config.back_end.keyframe),
-      keep_prob_(config.mapper.detection.keep_prob),
-      map_(config.mapper.detection.keep_prob),
-      localizer_config_(config.localization) {
-  if (config.method == Method::kOdometry) return;
-  mapper_.emplace(config.mapper, classes);
-  back_end_.emplace(config.back_end, odometry_noise_, classes);
-  const SubmapConfig& submap = config.mapper.submap;  // what is within its propagation is carried on by the mapper
-  const double earlier_m = std::max(config.back_end.revisit.min_driven_m, submap.propagation_m);
-  earlier_after_submaps_ = static_cast<int>(earlier_m / submap.length_m) + 2;
-  if (!config.back_end.close_loops) return;
-  mapper_->setEarlierMapProvider([this](const Pose& T_odom_submap) { return earlierMap(T_odom_submap); });
+bool goesOn(const StampedPose& last, const StampedPose& next) {
+  const double pause_s = secondsFromStamp(next.stamp - last.stamp);
+  const double way_m = (next.T_world_base.translation_m - last.T_world_base.translation_m).norm();
+  return pause_s > 0.0 && pause_s <= kMaxPause_s && way_m <= kMaxSpeed_m_s * pause_s;
 }
 
+Slam::Slam(const SlamConfig& config, const ClassTable& classes) : config_(config), parts_(makeParts(config, classes)) {}
+
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
-  if (!assembler_.addOdometry(T_odom_base)) return false;
-  odometry_.push_back(T_odom_base);
+  if (!parts_.assembler.addOdometry(T_odom_base)) return false;
+  parts_.sessions.add(T_odom_base);
   processReadyFrames();
   return true;
 }
 
 void Slam::addDetections(Stamp stamp, Detections detections) {
-  assembler_.addDetections(stamp, std::move(detections));
+  parts_.assembler.addDetections(stamp, std::move(detections));
   processReadyFrames();
 }
 
 void Slam::processReadyFrames() {
-  while (auto frame = assembler_.next()) {
-    if (mapper_ && latest_frame_) {
-      driven_m_ += (frame->T_odom_base.translation_m - latest_frame_->T_odom_base.translation_m).norm();
+  while (auto frame = parts_.assembler.next()) {
+    if (parts_.mapper && parts_.latest_frame) {
+      parts_.driven_m += (frame->T_odom_base.translation_m - parts_.latest_frame->T_odom_base.translation_m).norm();
     }
-    if (localizer_) localizeBy(*frame);
-    if (mapper_ && !localizer_) {
-      map(*frame);
-      if (is_place_known_) follow();
-    }
-    latest_frame_ = std::move(frame);
+    if (parts_.mapper) process(*frame);
+    parts_.latest_frame = std::move(frame);
   }
 }
 
-void Slam::map(const Frame& frame) {
+void Slam::process(const Frame& frame) {
+  if (localizerOf(parts_.mode) != nullptr) follow(frame);
+  if (localizerOf(parts_.mode) != nullptr) return;
+  if (parts_.mapper->isFullAt(frame.T_odom_base)) {
+    endSubmap();
+    if (isPlaceKnown(parts_.map, config_.localization.known_passes)) {
+      enter(Following{localizerHere()});
+      return follow(frame);
+    }
+  }
+  if (!parts_.mapper->isOpen()) beginSubmap(frame);
   const Stopwatch watch;
-  auto submap = mapper_->add(frame.index, frame.stamp, frame.T_odom_base, frame.detections, rng_);
-  mapping_s_ += watch.elapsed_s();
-  if (submap) take(std::move(*submap));
-  if (submap_frames_.empty()) submap_driven_m_ = driven_m_;
-  submap_frames_.push_back(frame);
+  parts_.mapper->add(frame, parts_.rng);
+  parts_.mapping_s += watch.elapsed_s();
+}
+
+/// Finds the frame in the map, and goes on to another mode if that says so.
+void Slam::follow(const Frame& frame) {
+  Localizer& localizer = *localizerOf(parts_.mode);
+  Frame calibrated = frame;
+  calibrated.detections = parts_.mapper->calibrated(frame.detections);
+  const bool is_found = localizer.add(calibrated, parts_.map, *parts_.closer);
+  if (is_found) parts_.sessions.add(localizer.fix());
+  const auto* localizing = std::get_if<Localizing>(&parts_.mode);
+  if (localizing != nullptr && !localizing->until_found) return;
+  if (is_found) {
+    const std::size_t passes = config_.localization.known_passes;
+    const bool is_known = passes > 0 && passesAt(parts_.map, localizer.fix().T_map_base.translation_m) >= passes;
+    is_known ? enter(Following{localizer}) : enter(Mapping{});
+  } else if (localizing == nullptr && localizer.sinceFix_m() > kFollowed_m) {
+    enter(Mapping{});
+  }
+}
+
+void Slam::beginSubmap(const Frame& frame) {
+  const double drifted_m = parts_.driven_m - std::max(parts_.tied_at_m, parts_.map.closedAt_m());
+  parts_.prediction = parts_.closer->predict(parts_.map, T_map_odom() * frame.T_odom_base, std::max(0.0, drifted_m));
+  parts_.submap_driven_m = parts_.driven_m;
+  EarlierMap earlier;
+  if (config_.back_end.close_loops) {
+    earlier = earlierMapAround(parts_.prediction.prior, parts_.map, parts_.graph, recentSubmaps(config_));
+  }
+  parts_.mapper->begin(frame.T_odom_base, std::move(earlier));
 }
 
 void Slam::endSubmap() {
-  if (auto submap = mapper_->finish()) take(std::move(*submap));
+  if (!parts_.mapper || !parts_.mapper->isOpen()) return;
+  const Stopwatch watch;
+  FinishedSubmap finished = parts_.mapper->finish();
+  parts_.mapping_s += watch.elapsed_s();
+  Map& map = parts_.map;
+  CutSubmap cut =
+      cutIntoKeyframes(finished.submap, finished.frames, parts_.submap_driven_m, config_.mapper.detection.keep_prob,
+                       odometryNoiseOf(config_.mapper.submap), config_.back_end.keyframe);
+  const IdRange<KeyframeId> keyframes =
+      map.add(std::make_shared<const Submap>(std::move(finished.submap)), std::move(cut.keyframes));
+  parts_.graph.add(map, keyframes, cut.sightings);
+  optimize();
+  parts_.closer->add(map);
+  const ClosureQuery query{keyframes, std::move(finished.alignment), parts_.prediction, parts_.tied_at_m};
+  for (const ClosureSource source : parts_.closer->sources()) {
+    bool is_any_verified = false;
+    for (LoopClosureRecord& closure : parts_.closer->find(source, map, query)) {
+      is_any_verified = is_any_verified || closure.is_verified;
+      map.add(std::move(closure));
+    }
+    if (is_any_verified) optimize();
+  }
 }
 
-void Slam::take(Submap submap) {
-  for (Frame& frame : submap_frames_) {
-    for (Detection& detection : frame.detections) detection = mapper_->corrected(detection);
+void Slam::optimize(bool is_whole) {
+  Map& map = parts_.map;
+  map.apply(parts_.graph.review(map));
+  for (int solution = 0; solution <= kMoreSolutions; ++solution) {
+    const auto changed = map.takeChanges();
+    map.apply(is_whole ? parts_.graph.optimizeFully(changed) : parts_.graph.optimize(changed));
+    if (map.identity().changedNames().empty()) return;
   }
-  const auto detector = [this](const Detection& detection) { return mapper_->detectorCov(detection); };
-  auto keyframes = cutIntoKeyframes(submap, submap_frames_, submap_driven_m_, keep_prob_, {odometry_noise_, detector},
-                                    keyframe_config_);
-  submap_frames_.clear();
-  const std::size_t first_new = back_end_->keyframes().keyframes.size();
-  const std::vector<MergedLandmark> merged = back_end_->add(std::move(keyframes), submap, prediction_);
-  prediction_ = std::move(next_prediction_);
-  map_.add(std::make_shared<const Submap>(std::move(submap)));
-  for (const auto& [gone, survivor] : merged) map_.merge(gone, survivor);
-  is_place_known_ = isKnownSince(first_new);
-}
-
-EarlierMap Slam::earlierMap(const Pose& T_odom_submap) {
-  next_prediction_ = back_end_->predict(T_odom_submap);
-  const AlignmentPrior& prior = next_prediction_.prior;
-  EarlierMap earlier;
-  earlier.stddev_xy_m = prior.stddev_xy_m;
-  earlier.stddev_z_m = prior.stddev_z_m;
-  earlier.stddev_yaw_rad = prior.stddev_yaw_rad;
-  const Pose T_submap_map = prior.T_a_b.inverse();
-  const double radius_m = kSensorReach_m + 3.0 * prior.stddev_xy_m;
-  const int newest = static_cast<int>(map_.submaps().size()) - earlier_after_submaps_;
-  const auto is_within = [&](const Eigen::Vector3d& position_m, double distance_m) {
-    return (position_m - prior.T_a_b.translation_m).head<2>().norm() <= distance_m;
-  };
-  for (int submap = 0; submap < static_cast<int>(map_.submaps().size()); ++submap) {
-    const Pose T_map_seen = T_map_submap(submap);
-    if (!is_within(T_map_seen.translation_m, radius_m + kGraphShift_m + map_.reach_m(submap))) continue;
-    map_.forEachLandmarkOf(submap, [&](const MixtureLandmark& seen) {
-      if (seen.last_submap > newest || !is_within(T_map_seen * seen.position.mean_m, radius_m + kGraphShift_m)) return;
-      const MixtureLandmark landmark = inMap(submap, seen);
-      if (!is_within(landmark.position.mean_m, radius_m)) return;
-      earlier.landmarks.push_back(transformed(T_submap_map, landmark));
-    });
-  }
-  if (submap_frames_.empty()) prediction_ = next_prediction_;  // no submap before it is still being finished
-  return earlier;
 }
 
 void Slam::finish() {
-  if (!mapper_) return;
   endSubmap();
-  back_end_->finish();
+  if (!parts_.map.keyframes().empty()) optimize(true);
 }
 
-const std::vector<MapHypothesis>& Slam::hypotheses() const {
+/// A localizer that begins where the odometry is by its present correction.
+Localizer Slam::localizerHere() const {
+  Localizer localizer(config_.localization, config_.back_end.revisit);
+  localizer.expectAt(T_map_odom(), 0.0);
+  return localizer;
+}
+
+/// Every change of mode.
+void Slam::enter(Mode mode) {
+  endSubmap();
+  const Localizer* before = localizerOf(parts_.mode);
+  if (before != nullptr && std::holds_alternative<Mapping>(mode)) {
+    parts_.driven_m += kBetweenSessions_m;
+    parts_.tied_at_m = parts_.driven_m;
+    parts_.graph.goOnAt(*before->T_map_odom());
+    parts_.mapper->forgetSurroundings();
+  }
+  parts_.mode = std::move(mode);
+}
+
+void Slam::localize() {
+  if (!parts_.mapper) throw std::logic_error("Slam: this method makes no map to localize in");
+  endSubmap();
+  if (parts_.map.submaps().empty()) throw std::logic_error("Slam: there is no map to localize in");
+  const Localizer* localizer = localizerOf(parts_.mode);
+  enter(Localizing{localizer != nullptr ? *localizer : localizerHere(), false});
+}
+
+void Slam::resumeMapping() {
+  const Localizer* localizer = localizerOf(parts_.mode);
+  if (localizer == nullptr) return;
+  localizer->isLocated() ? enter(Mapping{}) : enter(Localizing{*localizer, true});
+}
+
+void Slam::beginSession() {
+  endSubmap();
+  const auto* localizing = std::get_if<Localizing>(&parts_.mode);
+  const bool is_mapping_wanted = localizing == nullptr || localizing->until_found;
+  parts_.assembler.beginSession();
+  parts_.latest_frame.reset();
+  parts_.sessions.begin(parts_.map.keyframes().nextId());
+  if (parts_.map.submaps().empty()) return;
+  enter(Localizing{Localizer(config_.localization, config_.back_end.revisit), is_mapping_wanted});
+}
+
+bool Slam::expectAt(const Pose& T_map_base, double stddev_m) {
+  Localizer* localizer = localizerOf(parts_.mode);
+  const std::optional<StampedPose> odometry = parts_.sessions.latestOdometry();
+  if (localizer == nullptr || !odometry) return false;
+  localizer->expectAt(T_map_base * odometry->T_world_base.inverse(), stddev_m);
+  return true;
+}
+
+Pose Slam::T_map_odom() const {
+  const Localizer* localizer = localizerOf(parts_.mode);
+  if (localizer != nullptr) return localizer->T_map_odom().value_or(Pose::identity());
+  return parts_.graph.T_map_odom(parts_.map);
+}
+
+TrajectoryRecord trajectoryRecordOf(const Slam& slam) {
+  return slam.parts().sessions.record(slam.map());
+}
+
+std::vector<StampedPose> trajectoryOf(const Slam& slam) {
+  return trajectoryOf(trajectoryRecordOf(slam));
+}
+
+std::optional<StampedPose> latestPoseOf(const Slam& slam) {
+  const std::optional<StampedPose> odometry = slam.parts().sessions.latestOdometry();
+  if (!odometry) return std::nullopt;
+  return StampedPose{odometry->stamp, slam.T_map_odom() * odometry->T_world_base};
+}
+
+std::vector<MixtureLandmark> landmarksOf(const Slam& slam) {
+  return landmarksOf(slam.map(), slam.parts().graph);
+}
+
+const std::vector<MapHypothesis>& hypothesesOf(const Slam& slam) {
   static const std::vector<MapHypothesis> kNone;
-  return mapper_ ? mapper_->hypotheses() : kNone;
-}
-
-Pose Slam::T_map_submap(int submap) const {
-  return back_end_ ? back_end_->T_map_submap(submap) : map_.submaps()[static_cast<std::size_t>(submap)]->T_odom_submap;
-}
-
-/// Landmarks of the pose graph stand where the graph has them.
-MixtureLandmark Slam::inMap(int submap, const MixtureLandmark& seen) const {
-  MixtureLandmark landmark = transformed(T_map_submap(submap), seen);
-  const auto position_m = back_end_ ? back_end_->landmark(landmark.id) : std::optional<Eigen::Vector3d>();
-  if (!position_m) return landmark;
-  const Eigen::Vector3d shift_m = *position_m - landmark.position.mean_m;
-  landmark.position.mean_m += shift_m;
-  for (MixtureComponent& component : landmark.components) component.position.mean_m += shift_m;
-  return landmark;
-}
-
-std::vector<MixtureLandmark> Slam::landmarks() const {
-  std::vector<MixtureLandmark> landmarks;
-  map_.forEachLandmark(
-      [&](int submap, const MixtureLandmark& landmark) { landmarks.push_back(inMap(submap, landmark)); });
-  auto merged_into = map_.mergedInto();
-  for (MixtureLandmark& landmark : landmarks) landmark.merged_ids = std::move(merged_into[landmark.id]);
-  return landmarks;
+  return slam.parts().mapper ? slam.parts().mapper->hypotheses() : kNone;
 }
 
 }  // namespace semantic_mht_slam

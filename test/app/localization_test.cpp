@@ -46,7 +46,7 @@ class Revisits {
     Slam slam(config_.slam, classes_);
     for (std::size_t i = 0; i < split_; ++i) feed(slam, i, Pose::identity());
     slam.finish();
-    map_trajectory_ = slam.trajectory();
+    map_trajectory_ = trajectoryOf(slam);
     state_ = slam.snapshot();
     for (std::size_t i = 0; i < recording_.odometry.size(); ++i) nearest_.push_back(i < split_ ? i : nearestInMap(i));
   }
@@ -75,8 +75,8 @@ class Revisits {
       const double driven_m = driven(start, i);
       if (driven_m > (trial.is_found ? kTrack_m : kFindWithin_m) || !isNear(i)) break;
       feed(slam, i, T_session_odom);
-      if (!slam.isLocated()) continue;
-      const double error_m = errorOf(slam.latestPose()->T_world_base, i);
+      if (!isLocated(slam.mode())) continue;
+      const double error_m = errorOf(latestPoseOf(slam)->T_world_base, i);
       if (!trial.is_found) {
         trial.found_after_m = driven_m;
         trial.first_error_m = error_m;
@@ -191,8 +191,8 @@ TEST(SnapshotTest, GoingOnWithKitti00EqualsNeverHavingStopped) {
   Slam second(config.slam, classes, first.snapshot());
   feed(second, count / 2, count);
   second.finish();
-  const std::vector<StampedPose> expected = whole.trajectory();
-  const std::vector<StampedPose> trajectory = second.trajectory();
+  const std::vector<StampedPose> expected = trajectoryOf(whole);
+  const std::vector<StampedPose> trajectory = trajectoryOf(second);
   ASSERT_EQ(trajectory.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     ASSERT_EQ(trajectory[i].T_world_base.matrix(), expected[i].T_world_base.matrix()) << i;

@@ -59,7 +59,7 @@ class RoundTrip {
   Keyframe keyframeAt(int number, Rng& rng) const {
     Keyframe keyframe;
     keyframe.frame = static_cast<std::size_t>(number);
-    keyframe.submap = number / kPerSubmap;
+    keyframe.submap = SubmapId(number / kPerSubmap);
     keyframe.driven_m = number * kSpacing_m;
     const Pose pose = poseOf(number);
     Scene near;

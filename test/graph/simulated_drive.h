@@ -11,12 +11,12 @@
 
 namespace semantic_mht_slam {
 
-/// A drive through a town of square blocks, one submap every 30 m, poles along the streets; the vehicle turns at
+/// A drive through a town of square blocks, one node every 30 m, poles along the streets; the vehicle turns at
 /// random, so that it comes back to old streets more and more often, from either direction. For tests and benchmarks.
 struct SimulatedDrive {
   struct Step {
-    Pose T_world_submap;  ///< truth
-    SubmapNode node;
+    Pose T_world_node;  ///< truth
+    PoseNode node;
     std::vector<LoopConstraint> loops;
     std::vector<bool> is_wrong;  ///< per loop closure
   };
@@ -25,10 +25,10 @@ struct SimulatedDrive {
 };
 
 struct SimulatedDriveOptions {
-  int submaps = 2000;
+  int nodes = 2000;
   int blocks = 14;                ///< streets per direction minus one
   double loop_prob = 0.5;         ///< that a place seen before is recognised
-  double wrong_loop_prob = 0.05;  ///< per submap
+  double wrong_loop_prob = 0.05;  ///< per node
   double odometry_m = 0.16;       ///< standard deviation of one step
   double odometry_rad = 0.004;
   double sighting_m = 0.15;
@@ -68,7 +68,7 @@ inline std::vector<Pose> drivePath(const SimulatedDriveOptions& options, Rng& rn
   const int dx[] = {1, 0, -1, 0};
   const int dy[] = {0, 1, 0, -1};
   const double block_m = kStep_m * kStepsPerBlock;
-  while (static_cast<int>(path.size()) < options.submaps) {
+  while (static_cast<int>(path.size()) < options.nodes) {
     for (int i = 0; i < kStepsPerBlock; ++i) {
       path.push_back(planar(x * block_m + dx[direction] * i * kStep_m, y * block_m + dy[direction] * i * kStep_m,
                             direction * 0.5 * M_PI));
@@ -84,11 +84,11 @@ inline std::vector<Pose> drivePath(const SimulatedDriveOptions& options, Rng& rn
       break;
     }
   }
-  path.resize(options.submaps);
+  path.resize(options.nodes);
   return path;
 }
 
-/// Three poles around every place where a submap can begin.
+/// Three poles around every place where a node can begin.
 inline std::vector<std::int64_t> polesNear(const Eigen::Vector3d& position_m, SimulatedDrive& drive, Rng& rng) {
   std::vector<std::int64_t> ids;
   const int column = static_cast<int>(std::lround(position_m.x() / kStep_m));
@@ -123,9 +123,9 @@ inline SimulatedDrive simulateDrive(const SimulatedDriveOptions& options, Rng& r
   std::map<std::int64_t, Eigen::Vector3d> named;
   for (int i = 0; i < static_cast<int>(path.size()); ++i) {
     SimulatedDrive::Step& step = drive.steps.emplace_back();
-    step.T_world_submap = path[i];
+    step.T_world_node = path[i];
     step.node.odometry_cov = diagonalCov(options.odometry_m, options.odometry_rad);
-    step.node.T_previous_submap =
+    step.node.T_previous_node =
         i == 0 ? path[0] : path[i - 1].inverse() * path[i] * noise(rng, options.odometry_m, options.odometry_rad);
     const std::pair<int, int> place{static_cast<int>(std::lround(path[i].translation_m.x() / kStep_m)),
                                     static_cast<int>(std::lround(path[i].translation_m.y() / kStep_m))};

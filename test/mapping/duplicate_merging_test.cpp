@@ -36,10 +36,11 @@ Eigen::Matrix3d detectorCov(ClassIndex) {
 
 TEST(DuplicateMergingTest, NamesThatAlternateAtOnePlaceAreOneObject) {
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 6)};
-  const auto merged = mergeDuplicates({}, makeFrames([](std::size_t f) { return f % 5 == 0; }), detectorCov, landmarks);
+  const auto merged =
+      mergeDuplicates({}, makeFrames([](std::size_t f) { return f % 5 == 0; }), {}, detectorCov, landmarks);
   ASSERT_EQ(merged.size(), 1U);
-  EXPECT_EQ(merged[0].merged, 2U);
-  EXPECT_EQ(merged[0].survivor, 1U);
+  EXPECT_EQ(merged[0].first, 2U);
+  EXPECT_EQ(merged[0].second, 1U);
   ASSERT_EQ(landmarks.size(), 1U);
   EXPECT_EQ(landmarks[0].observations, 30);
   EXPECT_NEAR(landmarks[0].position.mean_m.x(), 0.25, 1e-9);
@@ -48,67 +49,35 @@ TEST(DuplicateMergingTest, NamesThatAlternateAtOnePlaceAreOneObject) {
 TEST(DuplicateMergingTest, ObjectsThatAreSeenTogetherStayTwo) {
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 24)};
   EXPECT_TRUE(
-      mergeDuplicates({}, makeFrames([](std::size_t f) { return f % 5 != 0; }), detectorCov, landmarks).empty());
+      mergeDuplicates({}, makeFrames([](std::size_t f) { return f % 5 != 0; }), {}, detectorCov, landmarks).empty());
   EXPECT_EQ(landmarks.size(), 2U);
 }
 
 TEST(DuplicateMergingTest, OtherPlacesAndOtherClassesStayTwo) {
   const auto frames = makeFrames([](std::size_t f) { return f % 5 == 0; });
   std::vector<MixtureLandmark> apart = {makeLandmark(1, 0.0, 24), makeLandmark(2, 5.0, 6)};
-  EXPECT_TRUE(mergeDuplicates({}, frames, detectorCov, apart).empty());
+  EXPECT_TRUE(mergeDuplicates({}, frames, {}, detectorCov, apart).empty());
   std::vector<MixtureLandmark> other_class = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 6, 1)};
-  EXPECT_TRUE(mergeDuplicates({}, frames, detectorCov, other_class).empty());
+  EXPECT_TRUE(mergeDuplicates({}, frames, {}, detectorCov, other_class).empty());
 }
 
 TEST(DuplicateMergingTest, NothingIsMergedWhenSwitchedOff) {
   DuplicateConfig config;
   config.merge = false;
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 6)};
-  EXPECT_TRUE(
-      mergeDuplicates(config, makeFrames([](std::size_t f) { return f % 5 == 0; }), detectorCov, landmarks).empty());
+  EXPECT_TRUE(mergeDuplicates(config, makeFrames([](std::size_t f) { return f % 5 == 0; }), {}, detectorCov, landmarks)
+                  .empty());
 }
 
-TEST(DuplicateMergingTest, ALandmarkTakesTheNameOfTheEarlierMap) {
-  std::vector<MixtureLandmark> landmarks = {makeLandmark(5, 0.0, 24), makeLandmark(6, 9.0, 3)};
-  std::vector<MergedLandmark> merged;
-  joinEarlierLandmark(makeLandmark(2, 100.0, 7), 5, landmarks, merged);
-  ASSERT_EQ(landmarks.size(), 2U);
-  EXPECT_EQ(landmarks[0].id, 2U);
-  EXPECT_EQ(landmarks[0].observations, 31);
-  EXPECT_EQ(landmarks[0].position.mean_m.x(), 0.0);
-  ASSERT_EQ(merged.size(), 1U);
-  EXPECT_EQ(merged[0].merged, 5U);
-  EXPECT_EQ(merged[0].survivor, 2U);
-}
-
-TEST(DuplicateMergingTest, NamesOfAnEarlierLandmarkThatWasMergedHereDoNotRunInACircle) {
-  std::vector<MixtureLandmark> landmarks = {makeLandmark(5, 0.0, 24)};
-  std::vector<MergedLandmark> merged = {{4, 2}, {2, 3}, {3, 5}};  // the earlier map's 2 is 5 by now
-  joinEarlierLandmark(makeLandmark(2, 100.0, 7), 5, landmarks, merged);
-  ASSERT_EQ(landmarks.size(), 1U);
-  EXPECT_EQ(landmarks[0].id, 2U);
-  for (const LandmarkId name : {2U, 3U, 4U, 5U}) {
-    LandmarkId id = name;
-    for (std::size_t step = 0; step <= merged.size(); ++step) {
-      for (const MergedLandmark& next : merged) {
-        if (next.merged != id) continue;
-        id = next.survivor;
-        break;
-      }
-    }
-    EXPECT_EQ(id, 2U) << "from " << name;
-  }
-}
-
-TEST(DuplicateMergingTest, ALandmarkThatHasTheEarlierNameAlreadyTakesTheOtherOneIn) {
-  std::vector<MixtureLandmark> landmarks = {makeLandmark(2, 0.0, 24), makeLandmark(5, 0.5, 6)};
-  std::vector<MergedLandmark> merged;
-  joinEarlierLandmark(makeLandmark(2, 100.0, 24), 5, landmarks, merged);
-  ASSERT_EQ(landmarks.size(), 1U);
-  EXPECT_EQ(landmarks[0].id, 2U);
-  EXPECT_EQ(landmarks[0].observations, 30);
-  ASSERT_EQ(merged.size(), 1U);
-  EXPECT_EQ(merged[0].survivor, 2U);
+TEST(DuplicateMergingTest, WhatAFrameShowsSideBySideStaysTwoHoweverSeldom) {
+  const auto frames = makeFrames([](std::size_t f) { return f % 5 == 0 || f == 7; });
+  SideBySide seen;
+  seen.add({{7, 0, 1}, {7, 1, 2}}, {});
+  std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 7)};
+  EXPECT_TRUE(mergeDuplicates({}, frames, seen, detectorCov, landmarks).empty());
+  SideBySide parts;
+  parts.add({{7, 0, 1}, {7, 1, 2}}, {{1, 2, 1}});
+  EXPECT_EQ(mergeDuplicates({}, frames, parts, detectorCov, landmarks).size(), 1U) << "two parts of one object";
 }
 
 }  // namespace

@@ -5,7 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/map/identity.h"
 #include "semantic_mht_slam/mapping/mapper.h"
+
+#include "mapping/mapper_test_util.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -49,8 +52,8 @@ struct Options {
 };
 
 struct Passes {
-  std::vector<Submap> first;
-  std::vector<Submap> second;
+  std::vector<FinishedSubmap> first;
+  std::vector<FinishedSubmap> second;
   std::map<std::size_t, std::vector<int>> truth;  ///< true object of each row, by frame
   std::size_t most_alignments = 0;                ///< distinct ones alive together in the second pass
   std::vector<double> both_alive_m;               ///< distances at which two alignments were alive
@@ -74,9 +77,9 @@ Detections detect(const std::vector<Object>& objects, double x_m, const Options&
 }
 
 /// The first pass's landmarks in the odometry frame.
-std::vector<MixtureLandmark> landmarksOf(const std::vector<Submap>& submaps) {
+std::vector<MixtureLandmark> landmarksOf(const std::vector<FinishedSubmap>& submaps) {
   std::map<LandmarkId, MixtureLandmark> by_id;
-  for (const Submap& submap : submaps) {
+  for (const auto& [submap, frames, alignment] : submaps) {
     for (MixtureLandmark landmark : submap.landmarks) {
       landmark.position.mean_m = submap.T_odom_submap * landmark.position.mean_m;
       by_id[landmark.id] = landmark;
@@ -117,9 +120,9 @@ std::size_t distinctAlignments(const std::vector<MapHypothesis>& leaves) {
 void driveThroughNothing(Mapper& mapper, Rng& rng) {
   for (int i = 0; i < 20; ++i) {
     const Pose T_odom_base{Eigen::Quaterniond::Identity(), {100.0 + 10.0 * i, 0.0, 0.0}};
-    mapper.add(1000 + static_cast<std::size_t>(i), 1000 + i, T_odom_base, {}, rng);
+    feed(mapper, {1000 + static_cast<std::size_t>(i), 1000 + i, T_odom_base, {}}, rng);
   }
-  mapper.finish();
+  EXPECT_TRUE(mapper.finish().submap.landmarks.empty());
 }
 
 Passes drive(std::uint64_t seed, const Options& options, const MapperConfig& config = {}) {
@@ -127,7 +130,7 @@ Passes drive(std::uint64_t seed, const Options& options, const MapperConfig& con
   Passes passes;
   const std::vector<Object> first_street = street(seed);
   const std::vector<Object> second_street = options.is_same_street ? first_street : street(seed + 1000);
-  mapper.setEarlierMapProvider([&](const Pose& T_odom_submap) {
+  const auto earlier_map = [&](const Pose& T_odom_submap) {
     EarlierMap map;
     if (T_odom_submap.translation_m.x() < 0.5 * kFar_m) return map;
     map.landmarks = landmarksOf(passes.first);
@@ -140,7 +143,7 @@ Passes drive(std::uint64_t seed, const Options& options, const MapperConfig& con
     map.stddev_xy_m = options.stddev_xy_m;
     if (options.is_reversed) std::reverse(map.landmarks.begin(), map.landmarks.end());
     return map;
-  });
+  };
   Rng rng(seed);
   Rng tree_rng(1);
   for (std::size_t f = 0; f < 2 * kFrames; ++f) {
@@ -149,36 +152,38 @@ Passes drive(std::uint64_t seed, const Options& options, const MapperConfig& con
     const Pose T_odom_base{Eigen::Quaterniond::Identity(), {x_m + (is_second ? kFar_m : 0.0), 0.0, 0.0}};
     const Detections seen = detect(is_second ? second_street : first_street, x_m, options, rng, passes.truth[f]);
     if (f == kFrames) {
-      passes.first.push_back(*mapper.finish());
+      passes.first.push_back(mapper.finish());
       driveThroughNothing(mapper, tree_rng);
     }
-    auto submap = mapper.add(f, static_cast<Stamp>(f), T_odom_base, seen, tree_rng);
-    if (submap) (is_second ? passes.second : passes.first).push_back(*submap);
+    auto finished = feed(mapper, {f, static_cast<Stamp>(f), T_odom_base, seen}, tree_rng, earlier_map);
+    if (finished) (is_second ? passes.second : passes.first).push_back(std::move(*finished));
     if (!is_second) continue;
     const std::size_t alignments = distinctAlignments(mapper.hypotheses());
     passes.most_alignments = std::max(passes.most_alignments, alignments);
     if (alignments > 1) passes.both_alive_m.push_back(x_m);
   }
-  passes.second.push_back(*mapper.finish());
+  passes.second.push_back(mapper.finish());
   return passes;
 }
 
 /// Landmark of each true object in a pass, ids resolved: the one that most of its detections went to.
-std::map<int, LandmarkId> landmarkOfObject(const Passes& passes, const std::vector<Submap>& submaps) {
-  std::map<LandmarkId, LandmarkId> survivor_of;
+std::map<int, LandmarkId> landmarkOfObject(const Passes& passes, const std::vector<FinishedSubmap>& submaps) {
+  Identity identity;
+  ClosureId closure(0);
   for (const auto* list : {&passes.first, &passes.second}) {
-    for (const Submap& submap : *list) {
-      for (const auto& [merged, survivor] : submap.merged) survivor_of[merged] = survivor;
+    for (const auto& [submap, frames, alignment] : *list) {
+      identity.add(submap);
+      if (!alignment) continue;
+      identity.add(closure, alignment->pairs);
+      identity.decide({{closure, true}});
+      ++closure;
     }
   }
   std::map<int, std::map<LandmarkId, int>> votes;
-  for (const Submap& submap : submaps) {
+  for (const auto& [submap, frames, alignment] : submaps) {
     for (const DetectionAssociation& association : submap.associations) {
-      LandmarkId id = association.landmark;
-      for (auto found = survivor_of.find(id); found != survivor_of.end(); found = survivor_of.find(id)) {
-        id = found->second;
-      }
-      ++votes[passes.truth.at(association.frame).at(static_cast<std::size_t>(association.row))][id];
+      const int truth = passes.truth.at(association.frame).at(static_cast<std::size_t>(association.row));
+      ++votes[truth][identity.landmarkOf(association.landmark)];
     }
   }
   std::map<int, LandmarkId> result;
@@ -201,10 +206,10 @@ TEST_P(MapBranchingSeeds, TheTrueOffsetIsFoundAndLandmarksHaveTheIdsOfTheEarlier
   options.T_earlier_submap = shifted(2.4, -1.8, 0.035);
   const Passes passes = drive(GetParam(), options);
   ASSERT_EQ(passes.second.size(), 2U);
-  for (const Submap& submap : passes.second) {
-    ASSERT_TRUE(submap.alignment.has_value());
-    EXPECT_TRUE(submap.alignment->is_accepted);
-    const Pose error = options.T_earlier_submap.inverse() * submap.alignment->T_earlier_submap;
+  for (const auto& [submap, frames, alignment] : passes.second) {
+    ASSERT_TRUE(alignment.has_value());
+    EXPECT_TRUE(alignment->is_accepted);
+    const Pose error = options.T_earlier_submap.inverse() * alignment->T_earlier_submap;
     EXPECT_LT(error.translation_m.head<2>().norm(), 0.2);
     EXPECT_LT(angularDistance(error.rotation, Eigen::Quaterniond::Identity()), 0.01);
   }
@@ -226,9 +231,11 @@ TEST_P(MapBranchingSeeds, APlaceThatWasNotVisitedStaysNew) {
   Options options;
   options.is_same_street = false;
   const Passes passes = drive(GetParam(), options);
-  for (const Submap& submap : passes.second) {
-    EXPECT_FALSE(submap.alignment && submap.alignment->is_accepted);
-    for (const MixtureLandmark& landmark : submap.landmarks) EXPECT_GE(landmark.first_submap, submap.index - 1);
+  for (const auto& [submap, frames, alignment] : passes.second) {
+    EXPECT_FALSE(alignment && alignment->is_accepted);
+    for (const MixtureLandmark& landmark : submap.landmarks) {
+      EXPECT_GE(landmark.first_submap.index() + 1, submap.id.index());
+    }
   }
 }
 
@@ -267,7 +274,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, MapBranchingSeeds, testing::Range<std::uint64_t
 TEST(MapBranchingTest, SwitchedOffTheEarlierMapIsNotAskedFor) {
   MapperConfig config;
   config.alignment.enabled = false;
-  for (const Submap& submap : drive(1, {}, config).second) EXPECT_FALSE(submap.alignment.has_value());
+  for (const FinishedSubmap& finished : drive(1, {}, config).second) EXPECT_FALSE(finished.alignment.has_value());
 }
 
 }  // namespace

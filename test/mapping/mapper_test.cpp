@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mapping/mapper_test_util.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -70,14 +72,14 @@ MapperRun runMapper(const MapperConfig& config, const std::vector<Seen>& frames,
   MapperRun run;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     const Pose T_odom_base{Eigen::Quaterniond::Identity(), {static_cast<double>(f), 0.0, 0.0}};
-    auto submap = mapper.add(f, static_cast<Stamp>(f), T_odom_base, frames[f].detections, rng);
-    if (submap) run.submaps.push_back(*submap);
+    const auto finished = feed(mapper, {f, static_cast<Stamp>(f), T_odom_base, frames[f].detections}, rng);
+    if (finished) run.submaps.push_back(finished->submap);
     double sum = 0.0;
     for (const MapHypothesis& hypothesis : mapper.hypotheses()) sum += std::exp(hypothesis.log_weight);
     run.largest_weight_error = std::max(run.largest_weight_error, std::abs(sum - 1.0));
     run.most_hypotheses = std::max(run.most_hypotheses, mapper.hypotheses().size());
   }
-  run.submaps.push_back(*mapper.finish());
+  run.submaps.push_back(mapper.finish().submap);
   return run;
 }
 
@@ -208,6 +210,22 @@ TEST(MapperTest, CorrectingThePoseRemovesDriftThatDetectionsShare) {
   uncorrected.submap.correct_pose = false;
   EXPECT_GT(purity(runMapper(correcting, frames), frames), 0.98);
   EXPECT_LT(purity(runMapper(uncorrected, frames), frames), 0.9);
+}
+
+TEST(MapperTest, CalibratedDetectionsStateTheNoiseThatWasLearnedNotThatOfTheTable) {
+  Mapper mapper(MapperConfig{}, makeTable());
+  Rng rng(3);
+  const std::vector<Seen> frames = simulate(21, 0.4, 0.0);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const Pose T_odom_base{Eigen::Quaterniond::Identity(), {static_cast<double>(f), 0.0, 0.0}};
+    feed(mapper, {f, static_cast<Stamp>(f), T_odom_base, frames[f].detections}, rng);
+  }
+  const Detections calibrated = mapper.calibrated(frames.back().detections);
+  ASSERT_FALSE(calibrated.empty());
+  for (const Detection& detection : calibrated) {
+    ASSERT_TRUE(detection.cov_m2);
+    EXPECT_GT(std::sqrt(detection.cov_m2->trace() / 3.0), 0.2) << "0.4 m in truth, 0.1 m in the table";
+  }
 }
 
 TEST(MapperTest, FramesWithoutAndWithTwoThousandDetectionsAreTaken) {

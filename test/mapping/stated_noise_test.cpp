@@ -4,6 +4,8 @@
 
 #include "semantic_mht_slam/mapping/mapper.h"
 
+#include "mapping/mapper_test_util.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -35,7 +37,7 @@ Eigen::Matrix3d covAfterTenFrames(const std::optional<Eigen::Matrix3d>& stated, 
     detection.position_m = {10.0, 2.0, 0.0};
     detection.class_index = frame == 9 ? last_class : 0;
     detection.cov_m2 = stated;
-    mapper.add(frame, static_cast<Stamp>(frame), Pose::identity(), {detection}, rng);
+    feed(mapper, {frame, static_cast<Stamp>(frame), Pose::identity(), {detection}}, rng);
   }
   const auto& landmarks = mapper.hypotheses().front().landmarks;
   EXPECT_EQ(landmarks.size(), 1U);
@@ -68,7 +70,7 @@ TEST(StatedNoiseTest, LandmarksTurnIntoTheNextSubmapAndGrowByTheOdometryOfTheOne
   detection.cov_m2 = Eigen::Vector3d(0.09, 0.04, 0.01).asDiagonal();
   const auto add = [&](std::size_t frame, double x_m, double yaw_rad, const Detections& detections) {
     const Pose T_odom_base{expRotation({0.0, 0.0, yaw_rad}), {x_m, 0.0, 0.0}};
-    mapper.add(frame, static_cast<Stamp>(frame), T_odom_base, detections, rng);
+    feed(mapper, {frame, static_cast<Stamp>(frame), T_odom_base, detections}, rng);
   };
   add(0, 0.0, 0.0, {detection});
   add(1, 20.0, 0.0, {});

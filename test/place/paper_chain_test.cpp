@@ -42,7 +42,7 @@ Keyframe keyframeOf(const Street& street, int number, bool is_return, Rng& rng) 
   const Pose T_street_base{expRotation({0.0, 0.0, is_return ? M_PI : 0.0}), {place * kKeyframeStep_m, 0.5 * pass, 0.0}};
   Keyframe keyframe;
   keyframe.frame = static_cast<std::size_t>(number);
-  keyframe.submap = number / kKeyframesOfSubmap;
+  keyframe.submap = SubmapId(number / kKeyframesOfSubmap);
   keyframe.driven_m = number * kKeyframeStep_m;
   for (SceneObject object : street.objects) {
     object.position_m = T_street_base.inverse() * object.position_m +
@@ -126,7 +126,7 @@ TEST(PaperChainTest, CandidatesAreRankedNotRecentAndCarryTheirScores) {
       EXPECT_LE(candidate.histogram_divergence, config.max_divergence);
       EXPECT_LE(candidate.scene_distance, config.max_scene_distance);
       EXPECT_GE(candidate.topology_score, -1.0);
-      EXPECT_EQ(candidate.submap, static_cast<int>(candidate.frame) / kKeyframesOfSubmap);
+      EXPECT_EQ(candidate.submap.index(), candidate.frame / kKeyframesOfSubmap);
       EXPECT_GE(candidates.front().score(), candidate.score());
       EXPECT_GE(candidate.score(), candidates.back().score());
       EXPECT_TRUE(candidate.refusal != PlaceRefusal::kNone || candidate.score() >= config.min_score);
@@ -155,14 +155,14 @@ TEST(PaperChainTest, EmptyScenesAndScenesOfOneClassAreNeverProposed) {
   for (int submap = 0; submap < 20; ++submap) {
     Keyframe keyframe;
     keyframe.frame = static_cast<std::size_t>(submap);
-    keyframe.submap = submap;
+    keyframe.submap = SubmapId(submap);
     keyframe.driven_m = 100.0 * submap;
     if (submap % 2 == 0) keyframe.scene = randomScene(20, 1, rng);
     const ClassHistogram histogram = classHistogram(keyframe.scene, kClasses);
     chain.add(histogram, {keyframe});
     for (const PaperCandidate& candidate : chain.query(keyframe, histogram)) {
       EXPECT_NE(candidate.refusal, PlaceRefusal::kNone);
-      EXPECT_EQ(candidate.submap % 2, 0) << "an empty scene was found";
+      EXPECT_EQ(candidate.submap.index() % 2, 0U) << "an empty scene was found";
     }
   }
 }

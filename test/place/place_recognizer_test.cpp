@@ -47,7 +47,7 @@ class Drive {
     driven_m_ += kSpacing_m;
     Keyframe keyframe;
     keyframe.frame = T_map_keyframe_.size();
-    keyframe.submap = static_cast<int>(T_map_keyframe_.size()) / kPerSubmap;
+    keyframe.submap = SubmapId(static_cast<int>(T_map_keyframe_.size()) / kPerSubmap);
     keyframe.driven_m = driven_m_;
     keyframe.scene = std::move(scene);
     pending_.push_back(std::move(keyframe));

@@ -5,8 +5,8 @@
 
 #include "semantic_mht_slam/common/pose.h"
 #include "semantic_mht_slam/common/random.h"
+#include "semantic_mht_slam/map/scene.h"
 #include "semantic_mht_slam/models/class_table.h"
-#include "semantic_mht_slam/place/scene.h"
 
 namespace semantic_mht_slam {
 

@@ -5,7 +5,7 @@
 
 #include "semantic_mht_slam/common/pose.h"
 #include "semantic_mht_slam/common/random.h"
-#include "semantic_mht_slam/place/scene.h"
+#include "semantic_mht_slam/map/scene.h"
 
 namespace semantic_mht_slam {
 

@@ -57,7 +57,8 @@ TEST_P(DiagnosisTest, WhatWasDroppedLongAgoIsNoFaultAnyMore) {
   const EstimatorStatus fresh = status.estimator;
   GetParam().cause(status);
   const bool is_about_drops = status.estimator.counters.odometry_invalid > fresh.counters.odometry_invalid ||
-                              status.queue_dropped > 0 || !status.estimator.refused.unknown_classes.empty() ||
+                              status.queue_dropped > 0 || status.estimator.graph.failures > 0 ||
+                              !status.estimator.refused.unknown_classes.empty() ||
                               status.estimator.refused.objects_without_transform > 0;
   if (!is_about_drops) return;
   DiagnosticStatusWrapper later;
@@ -201,6 +202,13 @@ const std::vector<Fault> kFaults = {
        s.estimator.initial_pose_problem = "its covariance is not finite";
      },
      {"initialpose", "its covariance is not finite"}},
+    {"GraphFails",
+     diagnoseEstimator,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.estimator.graph = {3, "the solution is not finite"};
+     },
+     {"pose graph", "not finite"}},
     {"FullQueue", diagnoseQueue, DiagnosticStatus::WARN, [](NodeStatus& s) { s.queue_dropped = 5; }, {"full"}},
 };
 

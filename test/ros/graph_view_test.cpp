@@ -1,8 +1,11 @@
 #include "semantic_mht_slam/ros/graph_view.h"
 
 #include <cmath>
+#include <memory>
 
 #include <gtest/gtest.h>
+
+#include "semantic_mht_slam/slam/slam.h"
 
 #include "support/recordings.h"
 
@@ -55,7 +58,7 @@ TEST(GraphViewTest, EverySubmapHasAnOutlineAroundItsKeyframes) {
   const Slam& slam = *driven;
   const std::size_t submaps = slam.map().submaps().size();
   ASSERT_GE(submaps, 2U);
-  const visualization_msgs::MarkerArray array = toSubmapMarkers(slam, "map");
+  const visualization_msgs::MarkerArray array = toSubmapMarkers(slam.map(), "map");
   const visualization_msgs::Marker& outlines = find(array, "submaps");
   EXPECT_EQ(outlines.points.size(), 8 * submaps);
   EXPECT_EQ(outlines.colors.size(), outlines.points.size());
@@ -65,19 +68,19 @@ TEST(GraphViewTest, EverySubmapHasAnOutlineAroundItsKeyframes) {
 TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
   const auto driven = driveRounds(2.5);
   const Slam& slam = *driven;
-  ASSERT_NE(slam.backEnd(), nullptr);
-  const std::size_t all = slam.backEnd()->closures().size();
-  const std::size_t accepted = acceptedClosures(slam);
+  const std::size_t all = slam.map().closures().size();
+  const std::size_t accepted = acceptedClosures(slam.map());
   ASSERT_GT(accepted, 0U) << "the same circle again";
+  ClosureNews news;
   LiveConfig live;
   live.refused_closures = true;
-  EXPECT_EQ(find(toLoopMarkers(slam, live, "map"), "accepted").points.size(), 2 * accepted);
-  EXPECT_EQ(find(toLoopMarkers(slam, live, "map"), "places").points.size(), accepted);
-  EXPECT_EQ(find(toLoopMarkers(slam, live, "map"), "refused").points.size(), 2 * (all - accepted));
-  EXPECT_TRUE(find(toLoopMarkers(slam, {}, "map"), "refused").points.empty());
-  const std::vector<LoopClosure> messages = toLoopClosures(slam, 0, "map");
+  EXPECT_EQ(find(toLoopMarkers(slam.map(), live, "map"), "accepted").points.size(), 2 * accepted);
+  EXPECT_EQ(find(toLoopMarkers(slam.map(), live, "map"), "places").points.size(), accepted);
+  EXPECT_EQ(find(toLoopMarkers(slam.map(), live, "map"), "refused").points.size(), 2 * (all - accepted));
+  EXPECT_TRUE(find(toLoopMarkers(slam.map(), {}, "map"), "refused").points.empty());
+  const std::vector<LoopClosure> messages = toLoopClosures(slam.map(), news.takeNews(slam.map()), "map");
   ASSERT_EQ(messages.size(), all);
-  EXPECT_EQ(toLoopClosures(slam, all, "map").size(), 0U);
+  EXPECT_TRUE(news.takeNews(slam.map()).empty()) << "told already";
   for (const LoopClosure& message : messages) {
     EXPECT_LT(message.match_stamp, message.header.stamp);
     EXPECT_LT(message.match_submap, message.query_submap);
@@ -88,7 +91,7 @@ TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
 TEST(GraphViewTest, WhatIsNotThereIsDeletedFromTheDisplay) {
   const Slam slam(SlamConfig{}, makeTwoClasses());
   for (const auto& array :
-       {toLoopMarkers(slam, {}, "map"), toSubmapMarkers(slam, "map"), toOdometryMarkers({}, "map")}) {
+       {toLoopMarkers(slam.map(), {}, "map"), toSubmapMarkers(slam.map(), "map"), toOdometryMarkers({}, "map")}) {
     for (const visualization_msgs::Marker& marker : array.markers) {
       EXPECT_EQ(marker.action, visualization_msgs::Marker::DELETE) << marker.ns;
     }

@@ -68,7 +68,7 @@ TEST_F(MapFileTest, WhatWasWrittenIsReadToTheLastBit) {
     EXPECT_TRUE(loaded.state.sections[i].bytes == map_.state.sections[i].bytes) << loaded.state.sections[i].name;
   }
   EXPECT_EQ(loaded.submaps, slam_.map().submaps().size());
-  EXPECT_EQ(loaded.landmarks, slam_.landmarks().size());
+  EXPECT_EQ(loaded.landmarks, landmarksOf(slam_).size());
   EXPECT_TRUE(loaded.has_same_parameters);
 }
 
@@ -96,7 +96,7 @@ TEST_F(MapFileTest, LandmarksAndTrajectoryCanBeReadWithoutTheState) {
   ASSERT_EQ(view.size(), 1U);
   const auto map = view.begin()->instantiate<SemanticMap>();
   ASSERT_NE(map, nullptr);
-  EXPECT_EQ(map->landmarks.size(), slam_.landmarks().size());
+  EXPECT_EQ(map->landmarks.size(), landmarksOf(slam_).size());
 }
 
 TEST_F(MapFileTest, OtherParametersAreAllowedAndTold) {

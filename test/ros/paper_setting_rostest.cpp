@@ -147,12 +147,13 @@ TEST_F(PaperSettingTest, ANodeGivesMapClosuresFeaturesAndTrajectoryAsOffline) {
   const LoadedMap loaded = readMapFile(save.request.path, config, classes, [] { return true; });
   EXPECT_TRUE(loaded.has_same_parameters) << "the node runs with the file's parameters and no others";
   const Slam saved(slam_config, classes, loaded.state);
-  const std::vector<SubmapCheck>& checks = saved.backEnd()->checks();
+  const IdVector<SubmapId, SubmapCheck>& checks = saved.parts().closer->checks();
   ASSERT_EQ(checks.size(), expected.submap_checks.size());
   std::size_t searched = 0;
   for (std::size_t i = 0; i < checks.size(); ++i) {
-    EXPECT_EQ(checks[i].evaluation.good_prob, expected.submap_checks[i].check.evaluation.good_prob) << "submap " << i;
-    searched += checks[i].is_checked ? 1 : 0;
+    EXPECT_EQ(checks[SubmapId(i)].evaluation.good_prob, expected.submap_checks[i].check.evaluation.good_prob)
+        << "submap " << i;
+    searched += checks[SubmapId(i)].is_checked ? 1 : 0;
   }
   EXPECT_GT(searched, 0U);
   EXPECT_LT(searched, checks.size()) << "the tree passes over what shows next to nothing";

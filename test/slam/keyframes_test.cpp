@@ -7,10 +7,6 @@ namespace {
 
 constexpr double kNoise_m2 = 0.01;
 
-Eigen::Matrix3d noise(const Detection&) {
-  return kNoise_m2 * Eigen::Matrix3d::Identity();
-}
-
 MixtureLandmark makeLandmark(LandmarkId id, const Eigen::Vector3d& position_m, double existence) {
   MixtureLandmark landmark;
   landmark.id = id;
@@ -32,6 +28,7 @@ struct Drive {
       for (int row = 0; row < 2; ++row) {
         Detection detection;
         detection.row = row;
+        detection.cov_m2 = kNoise_m2 * Eigen::Matrix3d::Identity();
         detection.position_m = submap.landmarks[static_cast<std::size_t>(row)].position.mean_m -
                                frame.T_odom_base.translation_m + Eigen::Vector3d(0.0, i % 2 == 0 ? 0.1 : -0.1, 0.0);
         frame.detections.push_back(detection);
@@ -49,8 +46,8 @@ struct Drive {
 
 TEST(KeyframesTest, ASubmapIsCutByTheDistanceDriven) {
   const Drive drive;
-  const auto keyframes =
-      cutIntoKeyframes(drive.submap, drive.frames, 50.0, 0.5, {OdometryNoise{}, noise}, drive.config);
+  const auto [keyframes, sightings] =
+      cutIntoKeyframes(drive.submap, drive.frames, 50.0, 0.5, OdometryNoise{}, drive.config);
   ASSERT_EQ(keyframes.size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(keyframes[k].frame, 100 + 4 * k);
@@ -60,9 +57,10 @@ TEST(KeyframesTest, ASubmapIsCutByTheDistanceDriven) {
 
 TEST(KeyframesTest, ASightingIsTheMeanOfItsDetectionsInTheKeyframe) {
   const Drive drive;
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, {OdometryNoise{}, noise}, drive.config);
-  ASSERT_EQ(keyframes[1].sightings.size(), 1U) << "what hardly exists is not a landmark";
-  const KeyframeSighting& sighting = keyframes[1].sightings[0];
+  const auto [keyframes, sightings] =
+      cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, OdometryNoise{}, drive.config);
+  ASSERT_EQ(sightings[1].size(), 1U) << "what hardly exists is not a landmark";
+  const Sighting& sighting = sightings[1][0];
   EXPECT_EQ(sighting.landmark, 1U);
   EXPECT_EQ(sighting.detections, 4);
   EXPECT_LT((sighting.position_m - Eigen::Vector3d(16.0, 3.0, 1.0)).norm(), 0.02);
@@ -74,19 +72,21 @@ TEST(KeyframesTest, ASightingIsTheMeanOfItsDetectionsInTheKeyframe) {
 
 TEST(KeyframesTest, TheSceneHoldsTheFusedPositions) {
   const Drive drive;
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, {OdometryNoise{}, noise}, drive.config);
+  const auto [keyframes, sightings] =
+      cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, OdometryNoise{}, drive.config);
   ASSERT_EQ(keyframes[2].scene.objects.size(), 1U);
   EXPECT_LT((keyframes[2].scene.objects[0].position_m - Eigen::Vector3d(12.0, 3.0, 1.0)).norm(), 1e-12);
   EXPECT_EQ(keyframes[2].scene.objects[0].landmark, 1U);
 }
 
-TEST(KeyframesTest, DetectionsOfAMergedLandmarkBelongToTheSurvivor) {
+TEST(KeyframesTest, KeyframesBelongToTheirSubmapAndEachHasItsSightings) {
   Drive drive;
-  drive.submap.merged = {{2, 1}};
-  drive.submap.landmarks.pop_back();
-  const auto keyframes = cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.5, {OdometryNoise{}, noise}, drive.config);
-  ASSERT_EQ(keyframes[0].sightings.size(), 1U);
-  EXPECT_EQ(keyframes[0].sightings[0].detections, 8);
+  drive.submap.id = SubmapId(7);
+  const auto [keyframes, sightings] =
+      cutIntoKeyframes(drive.submap, drive.frames, 0.0, 0.05, OdometryNoise{}, drive.config);
+  ASSERT_EQ(sightings.size(), keyframes.size());
+  for (const Keyframe& keyframe : keyframes) EXPECT_EQ(keyframe.submap, SubmapId(7));
+  EXPECT_EQ(sightings[0].size(), 2U) << "both exist by this measure";
 }
 
 }  // namespace

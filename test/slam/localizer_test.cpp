@@ -36,9 +36,9 @@ class LocalizerTest : public testing::TestWithParam<int> {
 
   /// Horizontal distance of the present pose from where the first round has been at the same place.
   double errorAt(int i) const {
-    const auto first_round = slam_.trajectory();
+    const auto first_round = trajectoryOf(slam_);
     const Pose& T_map_there = first_round[static_cast<std::size_t>(i % 480)].T_world_base;
-    return (slam_.latestPose()->T_world_base.translation_m - T_map_there.translation_m).head<2>().norm();
+    return (latestPoseOf(slam_)->T_world_base.translation_m - T_map_there.translation_m).head<2>().norm();
   }
 
   SquareDrive drive_;
@@ -49,20 +49,20 @@ class LocalizerTest : public testing::TestWithParam<int> {
 TEST_P(LocalizerTest, LostVehicleFindsItselfAndTracksWithoutChangingTheMap) {
   slam_.localize();
   const std::size_t submaps = slam_.map().submaps().size();
-  const std::size_t landmarks = slam_.landmarks().size();
+  const std::size_t landmarks = landmarksOf(slam_).size();
   for (const int start : {40, 170, 333}) {
     beginAt(start);
-    EXPECT_FALSE(slam_.isLocated());
+    EXPECT_FALSE(isLocated(slam_.mode()));
     int i = start;
-    while (!slam_.isLocated() && i < start + 50) feed(i, i + 1), ++i;
-    ASSERT_TRUE(slam_.isLocated()) << start;
+    while (!isLocated(slam_.mode()) && i < start + 50) feed(i, i + 1), ++i;
+    ASSERT_TRUE(isLocated(slam_.mode())) << start;
     for (; i < start + 120; ++i) {
       feed(i, i + 1);
       EXPECT_LT(errorAt(i), 1.0) << start << " " << i;
     }
   }
   EXPECT_EQ(slam_.map().submaps().size(), submaps);
-  EXPECT_EQ(slam_.landmarks().size(), landmarks);
+  EXPECT_EQ(landmarksOf(slam_).size(), landmarks);
 }
 
 TEST_P(LocalizerTest, PoseFromOutsideEndsBeingLost) {
@@ -70,26 +70,47 @@ TEST_P(LocalizerTest, PoseFromOutsideEndsBeingLost) {
   beginAt(100);
   EXPECT_FALSE(slam_.expectAt(Pose::identity(), 1.0)) << "without odometry nobody knows when that was";
   feed(100, 101);
-  Pose T_map_base = slam_.trajectory()[100].T_world_base;
+  Pose T_map_base = trajectoryOf(slam_)[100].T_world_base;
   T_map_base.translation_m.x() += 1.5;
   EXPECT_TRUE(slam_.expectAt(T_map_base, 2.0));
-  EXPECT_TRUE(slam_.isLocated());
+  EXPECT_TRUE(isLocated(slam_.mode()));
   feed(101, 160);
   EXPECT_LT(errorAt(159), 1.0);
 }
 
+TEST_P(LocalizerTest, UncertaintyFromOutsideCountsHoweverLittleTheOdometryDrifts) {
+  SlamConfig config = defaultsOf(Method::kDpmhm);
+  config.back_end.revisit.drift_per_m = 0.001;
+  Slam slam(config, makeStreetClasses(), slam_.snapshot());
+  slam.localize();
+  slam.beginSession();
+  const auto feedTo = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      slam.addOdometry({SquareDrive::stampAt(i - 100), SquareDrive::odometryAt(i)});
+      slam.addDetections(SquareDrive::stampAt(i - 100) - 30000000, drive_.detectionsAt(i));
+    }
+  };
+  feedTo(100, 101);
+  Pose T_map_base = trajectoryOf(slam)[100].T_world_base;
+  T_map_base.translation_m.x() += 3.5;
+  ASSERT_TRUE(slam.expectAt(T_map_base, 3.0));
+  feedTo(101, 115);
+  const Pose T_map_there = trajectoryOf(slam)[114].T_world_base;
+  EXPECT_LT((latestPoseOf(slam)->T_world_base.translation_m - T_map_there.translation_m).head<2>().norm(), 1.0);
+}
+
 TEST_P(LocalizerTest, AnotherSessionGoesOnInTheSameMap) {
   const std::size_t submaps = slam_.map().submaps().size();
-  const std::size_t landmarks = slam_.landmarks().size();
+  const std::size_t landmarks = landmarksOf(slam_).size();
   beginAt(700);
   feed(700, 1000);
   slam_.finish();
-  EXPECT_FALSE(slam_.isLocalizing());
+  EXPECT_FALSE(isLocalizing(slam_.mode()));
   EXPECT_GT(slam_.map().submaps().size(), submaps + 5);
-  EXPECT_LT(slam_.landmarks().size(), landmarks + landmarks / 4) << "what was known is not mapped twice";
+  EXPECT_LT(landmarksOf(slam_).size(), landmarks + landmarks / 4) << "what was known is not mapped twice";
   EXPECT_LT(errorAt(999), 1.0);
   int accepted = 0;
-  for (const LoopClosureRecord& record : slam_.backEnd()->closures()) accepted += record.is_accepted ? 1 : 0;
+  for (const LoopClosureRecord& record : slam_.map().closures()) accepted += record.is_accepted ? 1 : 0;
   EXPECT_GT(accepted, 5);
 }
 
@@ -98,7 +119,7 @@ TEST_P(LocalizerTest, ElsewhereItStaysLost) {
   const SquareDrive elsewhere(static_cast<std::uint64_t>(GetParam()) + 100);
   slam_.beginSession();
   elsewhere.feed(slam_, 0, 300);
-  EXPECT_FALSE(slam_.isLocated());
+  EXPECT_FALSE(isLocated(slam_.mode()));
 }
 
 /// Rounds of the square, each place known after two.
@@ -114,10 +135,10 @@ class KnownPlaceTest : public testing::TestWithParam<int> {
   }
 
   double errorAt(int i) const {
-    return (slam_.latestPose()->T_world_base.translation_m - drive_.truthAt(i).translation_m).head<2>().norm();
+    return (latestPoseOf(slam_)->T_world_base.translation_m - drive_.truthAt(i).translation_m).head<2>().norm();
   }
 
-  std::size_t keyframes() const { return slam_.backEnd()->keyframes().keyframes.size(); }
+  std::size_t keyframes() const { return slam_.map().keyframes().size(); }
 
   SquareDrive drive_;
   Slam slam_;
@@ -125,30 +146,30 @@ class KnownPlaceTest : public testing::TestWithParam<int> {
 
 TEST_P(KnownPlaceTest, TheMapDoesNotGrowInPlacesThatAreKnownAndThePoseStaysGood) {
   drive_.feed(slam_, 0, 1200);
-  EXPECT_TRUE(slam_.isFollowing());
-  EXPECT_FALSE(slam_.isLocalizing()) << "nobody asked for that";
+  EXPECT_TRUE(isFollowing(slam_.mode()));
+  EXPECT_FALSE(isLocalizing(slam_.mode())) << "nobody asked for that";
   const std::size_t before = keyframes();
   for (int i = 1200; i < 2400; ++i) {
     drive_.feed(slam_, i, i + 1);
     EXPECT_LT(errorAt(i), 1.5) << i;
   }
   EXPECT_EQ(keyframes(), before);
-  EXPECT_EQ(slam_.trajectory().size(), 2400U);
+  EXPECT_EQ(trajectoryOf(slam_).size(), 2400U);
 }
 
 TEST_P(KnownPlaceTest, AMapThatWasSavedAtAKnownPlaceIsFollowedAtOnce) {
   drive_.feed(slam_, 0, 1300);
-  ASSERT_TRUE(slam_.isFollowing());
+  ASSERT_TRUE(isFollowing(slam_.mode()));
   Slam loaded(config(), makeStreetClasses(), slam_.snapshot());
-  EXPECT_TRUE(loaded.isFollowing());
-  EXPECT_TRUE(loaded.isLocated());
-  const std::size_t before = loaded.backEnd()->keyframes().keyframes.size();
+  EXPECT_TRUE(isFollowing(loaded.mode()));
+  EXPECT_TRUE(isLocated(loaded.mode()));
+  const std::size_t before = loaded.map().keyframes().size();
   for (int i = 1300; i < 1500; ++i) {
     drive_.feed(loaded, i, i + 1);
-    const Pose T_map_base = loaded.latestPose()->T_world_base;
+    const Pose T_map_base = latestPoseOf(loaded)->T_world_base;
     EXPECT_LT((T_map_base.translation_m - drive_.truthAt(i).translation_m).head<2>().norm(), 1.5) << i;
   }
-  EXPECT_EQ(loaded.backEnd()->keyframes().keyframes.size(), before);
+  EXPECT_EQ(loaded.map().keyframes().size(), before);
 }
 
 class LeavingKnownPlaceTest : public KnownPlaceTest {
@@ -158,11 +179,11 @@ class LeavingKnownPlaceTest : public KnownPlaceTest {
 
 TEST_P(LeavingKnownPlaceTest, NewPlacesAreMappedAtOnce) {
   drive_.feed(slam_, 0, 1550);
-  ASSERT_TRUE(slam_.isFollowing());
+  ASSERT_TRUE(isFollowing(slam_.mode()));
   const std::size_t before = keyframes();
   drive_.feed(slam_, 1550, 1850);  // 290 m straight on, where the rounds turned
-  EXPECT_FALSE(slam_.isFollowing());
-  EXPECT_TRUE(slam_.isLocated());
+  EXPECT_FALSE(isFollowing(slam_.mode()));
+  EXPECT_TRUE(isLocated(slam_.mode()));
   slam_.finish();
   EXPECT_GT(keyframes(), before + 20);
   EXPECT_LT(errorAt(1849), 3.0);
@@ -173,7 +194,7 @@ TEST(KnownPlaceOffTest, WithoutAnyWantedEverythingIsMapped) {
   config.localization.known_passes = 0;
   Slam slam(config, makeStreetClasses());
   SquareDrive(1).feed(slam, 0, 1500);
-  EXPECT_FALSE(slam.isFollowing());
+  EXPECT_FALSE(isFollowing(slam.mode()));
   EXPECT_GT(slam.map().submaps().back()->end, SquareDrive::stampAt(1400));
 }
 

@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/slam/revisit_search.h"
 
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/common/random.h"
@@ -32,10 +34,12 @@ std::vector<SceneObject> makeStreet(Rng& rng, bool is_regular) {
 }
 
 /// Keyframes every 10 m that see what is within 40 m; landmark ids count from `first_id`.
-void drive(KeyframeMap& map, const std::vector<SceneObject>& world, double driven_m, const Pose& T_believed_true,
+void drive(Map& map, const std::vector<SceneObject>& world, double driven_m, const Pose& T_believed_true,
            LandmarkId first_id, Rng& rng) {
+  std::vector<Keyframe> keyframes;
+  GraphUpdate poses{{map.T_map_keyframes().begin(), map.T_map_keyframes().end()}, {}, ""};
   for (int k = 0; k < 8; ++k) {
-    MapKeyframe keyframe;
+    Keyframe keyframe;
     keyframe.driven_m = driven_m + 10.0 * k;
     const Pose T_true{Eigen::Quaterniond::Identity(), {10.0 * k, 0.0, 0.0}};
     for (std::size_t i = 0; i < world.size(); ++i) {
@@ -46,25 +50,30 @@ void drive(KeyframeMap& map, const std::vector<SceneObject>& world, double drive
       object.landmark = first_id + i;
       keyframe.scene.objects.push_back(object);
     }
-    map.keyframes.push_back(keyframe);
-    map.T_map_keyframe.push_back(T_believed_true * T_true);
+    keyframes.push_back(keyframe);
+    poses.T_map_keyframe.push_back(T_believed_true * T_true);
   }
+  Submap submap;
+  submap.id = map.submaps().nextId();
+  map.add(std::make_shared<const Submap>(submap), keyframes);
+  map.apply(poses);
 }
 
 TEST(RevisitSearchTest, AnOffsetIsFoundWithItsLandmarkPairs) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Rng rng(seed);
     const auto world = makeStreet(rng, false);
-    KeyframeMap map;
+    Map map(0.5);
     drive(map, world, 0.0, Pose::identity(), 1000, rng);
     drive(map, world, 500.0, {expRotation({0.01, -0.02, 0.03}), {2.5, -1.5, 0.4}}, 5000, rng);
-    const auto records = findRevisits(map, 12, 200.0, makeClasses(), RevisitConfig{});
+    const auto records = findRevisits(map, KeyframeId(12), 200.0, makeClasses(), RevisitConfig{});
     ASSERT_EQ(records.size(), 1U) << "seed " << seed;
-    EXPECT_TRUE(records[0].is_accepted) << records[0].reason;
-    EXPECT_EQ(records[0].match_keyframe, 4);
+    EXPECT_TRUE(records[0].is_verified) << records[0].reason;
+    EXPECT_EQ(records[0].match_keyframe, KeyframeId(4));
     EXPECT_LT(records[0].T_match_query.translation_m.norm(), 0.2) << "both passes were at the same place";
     EXPECT_LT(angularDistance(records[0].T_match_query.rotation, Eigen::Quaterniond::Identity()), 0.02);
-    EXPECT_EQ(records[0].pairs.size(), map.keyframes[12].scene.objects.size()) << "all of them were seen before";
+    EXPECT_EQ(records[0].pairs.size(), map.keyframes()[KeyframeId(12)].scene.objects.size())
+        << "all of them were seen before";
     for (const auto& [query, match] : records[0].pairs) EXPECT_EQ(query - 5000, match - 1000) << "seed " << seed;
   }
 }
@@ -72,11 +81,11 @@ TEST(RevisitSearchTest, AnOffsetIsFoundWithItsLandmarkPairs) {
 TEST(RevisitSearchTest, APlaceThatWasNotSeenBeforeIsNotAccepted) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Rng rng(seed);
-    KeyframeMap map;
+    Map map(0.5);
     drive(map, makeStreet(rng, false), 0.0, Pose::identity(), 1000, rng);
     drive(map, makeStreet(rng, false), 500.0, Pose::identity(), 5000, rng);
-    for (const auto& record : findRevisits(map, 12, 200.0, makeClasses(), RevisitConfig{})) {
-      EXPECT_FALSE(record.is_accepted) << "seed " << seed;
+    for (const auto& record : findRevisits(map, KeyframeId(12), 200.0, makeClasses(), RevisitConfig{})) {
+      EXPECT_FALSE(record.is_verified) << "seed " << seed;
     }
   }
 }
@@ -84,28 +93,28 @@ TEST(RevisitSearchTest, APlaceThatWasNotSeenBeforeIsNotAccepted) {
 TEST(RevisitSearchTest, ARegularRowIsAmbiguous) {
   Rng rng(1);
   const auto world = makeStreet(rng, true);
-  KeyframeMap map;
+  Map map(0.5);
   drive(map, world, 0.0, Pose::identity(), 1000, rng);
   drive(map, world, 500.0, {Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}}, 5000, rng);
-  const auto records = findRevisits(map, 12, 400.0, makeClasses(), RevisitConfig{});
+  const auto records = findRevisits(map, KeyframeId(12), 400.0, makeClasses(), RevisitConfig{});
   ASSERT_FALSE(records.empty());
-  EXPECT_FALSE(records[0].is_accepted);
+  EXPECT_FALSE(records[0].is_verified);
 }
 
 TEST(RevisitSearchTest, WhatWasJustDrivenIsNoRevisit) {
   Rng rng(1);
   const auto world = makeStreet(rng, false);
-  KeyframeMap map;
+  Map map(0.5);
   drive(map, world, 0.0, Pose::identity(), 1000, rng);
-  EXPECT_TRUE(findRevisits(map, 7, 70.0, makeClasses(), RevisitConfig{}).empty());
+  EXPECT_TRUE(findRevisits(map, KeyframeId(7), 70.0, makeClasses(), RevisitConfig{}).empty());
 }
 
 TEST(RevisitSearchTest, AnEmptySceneHasNoRevisit) {
   Rng rng(1);
-  KeyframeMap map;
+  Map map(0.5);
   drive(map, makeStreet(rng, false), 0.0, Pose::identity(), 1000, rng);
   drive(map, {}, 500.0, Pose::identity(), 5000, rng);
-  EXPECT_TRUE(findRevisits(map, 12, 200.0, makeClasses(), RevisitConfig{}).empty());
+  EXPECT_TRUE(findRevisits(map, KeyframeId(12), 200.0, makeClasses(), RevisitConfig{}).empty());
 }
 
 }  // namespace

@@ -12,15 +12,15 @@ namespace semantic_mht_slam {
 namespace {
 
 void expectSameResult(const Slam& a, const Slam& b) {
-  const auto trajectory_a = a.trajectory();
-  const auto trajectory_b = b.trajectory();
+  const auto trajectory_a = trajectoryOf(a);
+  const auto trajectory_b = trajectoryOf(b);
   ASSERT_EQ(trajectory_a.size(), trajectory_b.size());
   for (std::size_t i = 0; i < trajectory_a.size(); ++i) {
     ASSERT_EQ(trajectory_a[i].stamp, trajectory_b[i].stamp);
     ASSERT_EQ(trajectory_a[i].T_world_base.matrix(), trajectory_b[i].T_world_base.matrix()) << i;
   }
-  const auto landmarks_a = a.landmarks();
-  const auto landmarks_b = b.landmarks();
+  const auto landmarks_a = landmarksOf(a);
+  const auto landmarks_b = landmarksOf(b);
   ASSERT_EQ(landmarks_a.size(), landmarks_b.size());
   for (std::size_t i = 0; i < landmarks_a.size(); ++i) {
     ASSERT_EQ(landmarks_a[i].id, landmarks_b[i].id);
@@ -34,8 +34,8 @@ void expectSameResult(const Slam& a, const Slam& b) {
   for (std::size_t i = 0; i < associations_a.size(); ++i) {
     ASSERT_EQ(associations_a[i].landmark, associations_b[i].landmark);
   }
-  ASSERT_EQ(a.backEnd()->closures().size(), b.backEnd()->closures().size());
-  ASSERT_EQ(a.counters().detections, b.counters().detections);
+  ASSERT_EQ(a.map().closures().size(), b.map().closures().size());
+  ASSERT_EQ(a.parts().assembler.counters().detections, b.parts().assembler.counters().detections);
 }
 
 void expectSameSections(const SlamState& a, const SlamState& b) {
@@ -64,7 +64,7 @@ TEST_P(SlamStateTest, GoingOnFromASnapshotEqualsNeverHavingStopped) {
   whole.finish();
   const auto accepted = [](const Slam& slam) {
     int count = 0;
-    for (const LoopClosureRecord& record : slam.backEnd()->closures()) count += record.is_accepted ? 1 : 0;
+    for (const LoopClosureRecord& record : slam.map().closures()) count += record.is_accepted ? 1 : 0;
     return count;
   };
   ASSERT_GT(accepted(whole), 5) << "the drive must close loops for the test to mean something";
@@ -140,8 +140,8 @@ TEST(SlamStateErrorTest, AnotherMethodOrAnotherGraphIsRefused) {
   SlamConfig config = defaultsOf(Method::kDpmhm);
   const SlamState state = Slam(config, classes).snapshot();
   expectInputError([&] { Slam(defaultsOf(Method::kUkf), classes, state); }, {"'dpmhm'", "'ukf'"});
-  config.back_end.graph.chunk_submaps += 1;
-  expectInputError([&] { Slam(config, classes, state); }, {"graph.chunk_submaps 10"});
+  config.back_end.graph.chunk_nodes += 1;
+  expectInputError([&] { Slam(config, classes, state); }, {"graph.chunk_nodes 10"});
 }
 
 TEST(SlamStateErrorTest, RandomDamageNeverDoesMoreThanBeRefused) {

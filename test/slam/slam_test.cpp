@@ -13,29 +13,29 @@ StampedPose odometryAt(int i) {
 
 TEST(SlamTest, OdometryMethodPassesEveryUsableSampleThrough) {
   Slam slam(defaultsOf(Method::kOdometry), ClassTable{});
-  EXPECT_FALSE(slam.latestPose());
+  EXPECT_FALSE(latestPoseOf(slam));
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(slam.addOdometry(odometryAt(i)));
   StampedPose broken = odometryAt(6);
   broken.T_world_base.rotation.w() = std::nan("");
   EXPECT_FALSE(slam.addOdometry(broken));
-  const std::vector<StampedPose> trajectory = slam.trajectory();
+  const std::vector<StampedPose> trajectory = trajectoryOf(slam);
   ASSERT_EQ(trajectory.size(), 5U);
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(trajectory[static_cast<std::size_t>(i)].stamp, odometryAt(i).stamp);
     EXPECT_EQ(trajectory[static_cast<std::size_t>(i)].T_world_base.translation_m,
               odometryAt(i).T_world_base.translation_m);
   }
-  EXPECT_EQ(slam.latestPose()->stamp, odometryAt(4).stamp);
+  EXPECT_EQ(latestPoseOf(slam)->stamp, odometryAt(4).stamp);
 }
 
 TEST(SlamTest, LatestFrameFollowsTheDetections) {
   Slam slam(defaultsOf(Method::kOdometry), ClassTable{});
   slam.addDetections(odometryAt(1).stamp, {Detection{}});
-  EXPECT_FALSE(slam.latestFrame());
+  EXPECT_FALSE(slam.parts().latest_frame);
   slam.addOdometry(odometryAt(1));
-  ASSERT_TRUE(slam.latestFrame());
-  EXPECT_EQ(slam.latestFrame()->stamp, odometryAt(1).stamp);
-  EXPECT_EQ(slam.latestFrame()->detections.size(), 1U);
+  ASSERT_TRUE(slam.parts().latest_frame);
+  EXPECT_EQ(slam.parts().latest_frame->stamp, odometryAt(1).stamp);
+  EXPECT_EQ(slam.parts().latest_frame->detections.size(), 1U);
 }
 
 }  // namespace

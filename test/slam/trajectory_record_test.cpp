@@ -39,15 +39,15 @@ TEST(TrajectoryRecordTest, ARecordGivesTheTrajectoryOfItsMomentHoweverTheEstimat
   const SquareDrive drive(1);
   Slam slam(defaultsOf(Method::kDpmhm), makeStreetClasses());
   drive.feed(slam, 0, 450);
-  const std::vector<StampedPose> before = slam.trajectory();
-  const TrajectoryRecord record = slam.trajectoryRecord();
+  const std::vector<StampedPose> before = trajectoryOf(slam);
+  const TrajectoryRecord record = trajectoryRecordOf(slam);
   drive.feed(slam, 450, 640);
   const std::vector<StampedPose> trajectory = trajectoryOf(record);
   ASSERT_EQ(trajectory.size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {
     ASSERT_EQ(trajectory[i].T_world_base.matrix(), before[i].T_world_base.matrix()) << i;
   }
-  EXPECT_NE(slam.trajectory()[449].T_world_base.matrix(), before[449].T_world_base.matrix())
+  EXPECT_NE(trajectoryOf(slam)[449].T_world_base.matrix(), before[449].T_world_base.matrix())
       << "was not corrected since";
 }
 

@@ -27,6 +27,8 @@ struct RunResult {
   std::vector<StampedPose> online_trajectory;  ///< T_map_base as it was known at each of these moments
   std::vector<LoopClosureResult> loop_closures;
   InputCounters counters;
+  GraphStatus graph;
+  std::vector<IdentityEvent> identity;             ///< mergers of landmarks, and what was taken back
   std::vector<MixtureLandmark> landmarks;          ///< map frame, by rising id
   std::vector<DetectionAssociation> associations;  ///< of every detection that was used
   std::size_t submaps = 0;

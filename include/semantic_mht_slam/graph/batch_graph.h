@@ -52,6 +52,10 @@ struct BatchGraph {
   std::vector<PoseEdge> pose_edges;
   std::vector<PointEdge> point_edges;
   std::vector<int> fixed_poses;  ///< indices; empty: the first pose is held
+
+  int poseCount() const { return static_cast<int>(poses.size()); }
+  int pointCount() const { return static_cast<int>(points.size()); }
+  int edgeCount() const { return static_cast<int>(pose_edges.size()); }
 };
 
 /// True for edges that join a pose to its successor in `poses`: odometry, which is never doubted.

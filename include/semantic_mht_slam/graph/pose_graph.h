@@ -10,25 +10,22 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/common/pose_cov.h"
 
 namespace semantic_mht_slam {
 
 class StateArchive;
 
-/// Covariance of the error of a relative pose T_from_to: order translation (m), rotation (rad), both in the frame `to`,
-/// the error being a small step on the right of the measurement.
-using PoseCov = Eigen::Matrix<double, 6, 6>;
-
 /// Parameters of `PoseGraph`.
 struct PoseGraphConfig {
   double loop_cauchy_scale = 1.0;
   double landmark_cauchy_scale = 2.8;
-  int window_submaps = 8;
-  int chunk_submaps = 10;
+  int window_nodes = 8;
+  int chunk_nodes = 10;
   int window_iterations = 3;
   int global_iterations = 4;
   int repair_interval = 4;
-  int whole_submaps = 150;
+  int whole_nodes = 150;
   double time_budget_s = 0.0;
   double loop_gate = 16.812;
   double odometry_cov_scale = 2.0;
@@ -37,24 +34,24 @@ struct PoseGraphConfig {
 
 void describe(PoseGraphConfig& config, Fields& fields);
 
-/// A landmark as one submap saw it.
+/// A landmark as one node saw it.
 struct LandmarkSighting {
-  std::int64_t landmark = 0;                             ///< the same number for the same landmark in every submap
-  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of the submap
+  std::int64_t landmark = 0;                             ///< the same number for the same landmark in every node
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of the node
   Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();
 };
 
 /// A new node of the graph.
-struct SubmapNode {
-  Pose T_previous_submap;  ///< odometry from the submap before; for the first one its pose in the world
-  PoseCov odometry_cov = PoseCov::Identity();  ///< integrated along the submap before; not used for the first one
+struct PoseNode {
+  Pose T_previous_node;  ///< odometry from the node before; for the first one its pose in the world
+  PoseCov odometry_cov = PoseCov::Identity();  ///< integrated along the node before; not used for the first one
   std::vector<LandmarkSighting> sightings;
 };
 
 /// A place that was recognised.
 struct LoopConstraint {
-  int from = 0;  ///< index of a submap
-  int to = 0;    ///< index of another submap
+  int from = 0;  ///< index of a node
+  int to = 0;    ///< index of another node
   Pose T_from_to;
   PoseCov cov = PoseCov::Identity();
 };
@@ -78,23 +75,23 @@ struct PoseGraphUpdate {
   std::string failure;  ///< empty, or why the estimate was kept as it was
   int iterations = 0;
   bool out_of_time = false;       ///< the time budget ended the call; the next ones go on from the estimate reached
-  bool moved_everything = false;  ///< the correction went beyond the newest submaps
+  bool moved_everything = false;  ///< the correction went beyond the newest nodes
   std::vector<LoopDecision> loop_changes;  ///< loop closures that were switched on or off
 };
 
-/// Pose graph of a drive (paper section III): submap poses in SE(3), point landmarks in R^3; odometry with integrated
-/// covariance, landmarks relative to the submaps that saw them, loop closures, priors. Errors are whitened with the
+/// Pose graph of a drive (paper section III): node poses in SE(3), point landmarks in R^3; odometry with integrated
+/// covariance, landmarks relative to the nodes that saw them, loop closures, priors. Errors are whitened with the
 /// upper square root of the information; a Cauchy loss is on landmarks and loop closures, none on odometry. The first
-/// submap is held.
+/// node is held.
 ///
-/// The time of a call does not grow with the length of the drive as that of a batch solution does: the newest submaps
+/// The time of a call does not grow with the length of the drive as that of a batch solution does: the newest nodes
 /// are optimised with everything they see while the rest is held; a new loop closure is solved on a skeleton that has
-/// one node a chunk of submaps and condensed factors between them (Grisetti et al., Robust optimization of factor
-/// graphs by using condensed measurements, IROS 2012); the submaps between the nodes follow as odometry lets them, and
+/// one node a chunk of nodes and condensed factors between them (Grisetti et al., Robust optimization of factor
+/// graphs by using condensed measurements, IROS 2012); the nodes between the nodes follow as odometry lets them, and
 /// the pieces that were bent most are optimised in full now and then. A graph that is still small is optimised as a
 /// whole instead when a loop closes. `optimizeFully` solves everything at once, whatever the size.
 ///
-/// Wrong input (a covariance that is not positive definite, numbers that are not finite, unknown submaps) throws
+/// Wrong input (a covariance that is not positive definite, numbers that are not finite, unknown nodes) throws
 /// std::invalid_argument and changes nothing. Results do not depend on threads or time unless a time budget is set.
 class PoseGraph {
  public:
@@ -103,34 +100,38 @@ class PoseGraph {
   PoseGraph(PoseGraph&&) noexcept;
   PoseGraph& operator=(PoseGraph&&) noexcept;
 
-  /// Adds a submap behind the newest one and returns its index. A landmark's number may occur once in a submap.
-  int addSubmap(const SubmapNode& submap);
+  /// Adds a node behind the newest one and returns its index. A landmark's number may occur once in a node.
+  int addNode(const PoseNode& node);
 
   /// Adds a loop closure and returns its index. It takes part from the next `optimize` on, if it is accepted there.
   int addLoopClosure(const LoopConstraint& loop);
 
   /// Adds absolute knowledge of a pose; `cov` as in `LoopConstraint` with the world as `from`.
-  void addPrior(int submap, const Pose& T_world_submap, const PoseCov& cov);
+  void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
 
-  /// Makes one landmark of two: all sightings of `merged` become sightings of `survivor`, also where one submap saw
-  /// both. Afterwards both numbers mean that one landmark, in every call. Acts like a loop closure: the next `optimize`
-  /// brings the places together and optimises the submaps that saw either of them. Landmarks that are one already stay
-  /// so. Throws std::invalid_argument, and changes nothing, if the numbers are equal or no submap saw one of them.
-  void mergeLandmarks(std::int64_t merged, std::int64_t survivor);
+  /// From now on all numbers of a group mean one landmark, in every call, and no other number does: what was one before
+  /// is split into the groups. Sightings keep their own number. Acts like a loop closure: the next `optimize` brings
+  /// the places of a merged landmark together, or lets those of a split one go, and optimises the nodes that saw it.
+  /// Numbers that no node saw yet are remembered. Throws std::invalid_argument, and changes nothing, for an empty
+  /// group, a number in two groups, and groups that leave out a number that is one with a number of theirs.
+  void regroup(const std::vector<std::vector<std::int64_t>>& groups);
+
+  /// Decides which new loop closures take part, before `optimize` does so; returns the decisions that changed.
+  [[nodiscard]] std::vector<LoopDecision> decide();
 
   /// Brings the estimate up to date after additions, in time that does not depend on the length of the drive.
-  PoseGraphUpdate optimize();
+  [[nodiscard]] PoseGraphUpdate optimize();
 
   /// Solves the whole graph, in time that grows with it.
-  PoseGraphUpdate optimizeFully();
+  [[nodiscard]] PoseGraphUpdate optimizeFully();
 
-  int submaps() const;
+  int nodes() const;
 
-  /// Poses of all submaps in the world frame.
+  /// Poses of all nodes in the world frame.
   std::vector<Pose> poses() const;
-  Pose pose(int submap) const;
+  Pose pose(int node) const;
 
-  /// Position in the world frame; empty for a landmark that no submap saw.
+  /// Position in the world frame; empty for a landmark that no node saw.
   std::optional<Eigen::Vector3d> landmark(std::int64_t id) const;
 
   std::vector<LoopDecision> loopDecisions() const;
@@ -139,9 +140,9 @@ class PoseGraph {
   /// robust losses.
   double cost() const;
 
-  /// Covariance of a submap's pose, conditional on the held first one; a step as in `PoseCov` in the frame of the
-  /// submap. Looks at the whole graph: for requests, not for every submap. Empty if the problem is singular.
-  std::optional<PoseCov> poseCovariance(int submap) const;
+  /// Covariance of a node's pose, conditional on the held first one; a step as in `PoseCov` in the frame of the
+  /// node. Looks at the whole graph: for requests, not for every node. Empty if the problem is singular.
+  std::optional<PoseCov> poseCovariance(int node) const;
 
   /// Covariance of a landmark in the world frame; empty if it is unknown or the problem is singular.
   std::optional<Eigen::Matrix3d> landmarkCovariance(std::int64_t id) const;

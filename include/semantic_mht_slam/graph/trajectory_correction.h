@@ -7,13 +7,13 @@
 
 namespace semantic_mht_slam {
 
-/// A moment of the drive where the graph corrected the pose: the origin of a submap.
+/// A moment of the drive where the graph corrected the pose: the origin of a node.
 struct CorrectionAnchor {
   std::size_t index = 0;  ///< position in the list of odometry poses
   Pose T_map_base;        ///< corrected pose at that moment
 };
 
-/// Carries the corrections at submap origins over to every odometry pose. Between two anchors the pose is blended from
+/// Carries the corrections at node origins over to every odometry pose. Between two anchors the pose is blended from
 /// what odometry says forwards from the first and backwards from the second, in proportion to the distance travelled
 /// (to the index where the vehicle stood still), so that the trajectory meets every anchor and has no steps. Before the
 /// first and behind the last anchor odometry is attached rigidly.

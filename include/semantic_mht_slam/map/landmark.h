@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 
 #include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/map/ids.h"
 #include "semantic_mht_slam/models/class_table.h"
 
 namespace semantic_mht_slam {
@@ -34,9 +36,9 @@ struct MixtureLandmark {
   ClassProbs class_probs;
   double existence_prob = 0.0;
   int observations = 0;  ///< detections assigned to it in the most likely hypothesis that has it
-  int first_submap = 0;
-  int last_submap = 0;                 ///< that saw it
-  std::vector<LandmarkId> merged_ids;  ///< of landmarks that turned out to be this one, rising
+  SubmapId first_submap;
+  SubmapId last_submap;                ///< that saw it
+  std::vector<LandmarkId> merged_ids;  ///< other names of it, rising
 
   ClassIndex mostLikelyClass() const;
   bool isUndecided() const { return components.size() > 1; }
@@ -47,6 +49,9 @@ std::vector<MixtureLandmark>::const_iterator placeOf(LandmarkId id, const std::v
 
 /// The landmark with an id in a list by rising id; null if the list lacks it.
 const MixtureLandmark* findLandmark(LandmarkId id, const std::vector<MixtureLandmark>& landmarks);
+
+/// A landmark moved from frame b to frame a.
+MixtureLandmark transformed(const Pose& T_a_b, const MixtureLandmark& landmark);
 
 /// Mean and covariance of a mixture. Throws std::invalid_argument for an empty one.
 Gaussian3 moments(const std::vector<MixtureComponent>& components);

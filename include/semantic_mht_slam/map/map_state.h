@@ -10,8 +10,6 @@ namespace semantic_mht_slam {
 void transfer(StateArchive& archive, MixtureComponent& component);
 void transfer(StateArchive& archive, MixtureLandmark& landmark);
 void transferAssociations(StateArchive& archive, std::vector<DetectionAssociation>& associations);
-void transfer(StateArchive& archive, MergedLandmark& merged);
-void transfer(StateArchive& archive, MapAlignment& alignment);
 void transfer(StateArchive& archive, Submap& submap);
 
 }  // namespace semantic_mht_slam

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/common/pose.h"
 #include "semantic_mht_slam/common/stamp.h"
+#include "semantic_mht_slam/map/ids.h"
 #include "semantic_mht_slam/map/landmark.h"
 
 namespace semantic_mht_slam {
@@ -17,10 +18,14 @@ struct DetectionAssociation {
   LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a false positive
 };
 
-/// A landmark that turned out to be another one; its id stays resolvable through this.
-struct MergedLandmark {
-  LandmarkId merged = kNoLandmark;
-  LandmarkId survivor = kNoLandmark;
+/// Two names of one landmark.
+using SameLandmark = std::pair<LandmarkId, LandmarkId>;
+
+/// Two landmarks that one frame showed, or several, so near each other that they may be parts of one object.
+struct NearLandmarks {
+  LandmarkId a = kNoLandmark;  ///< less than b
+  LandmarkId b = kNoLandmark;
+  int frames = 0;
 };
 
 /// Where a submap lies in the map of earlier passes, as the hypotheses over joint alignments found it.
@@ -31,18 +36,19 @@ struct MapAlignment {
   double weight = 0.0;  ///< summed weight of the hypotheses that agree
   int matches = 0;      ///< landmarks that submap and earlier map have in common
   bool is_accepted = false;
+  std::vector<SameLandmark> pairs;  ///< of the submap, of the earlier map; empty if it is not accepted
 };
 
 /// A finished stretch of the drive with what was mapped in it. Immutable.
 struct Submap {
-  int index = 0;
+  SubmapId id;
   Stamp begin = 0;
   Stamp end = 0;
   Pose T_odom_submap;                              ///< odometry at its first frame
   std::vector<MixtureLandmark> landmarks;          ///< submap frame, by rising id: seen in this submap
   std::vector<DetectionAssociation> associations;  ///< of every detection in it, by frame and row
-  std::vector<MergedLandmark> merged;              ///< in the order in which they were found
-  std::optional<MapAlignment> alignment;           ///< against the earlier map, if there was one and it fits
+  std::vector<SameLandmark> duplicates;            ///< second name, first name; in the order in which they were found
+  std::vector<NearLandmarks> near;                 ///< by rising ids
 };
 
 }  // namespace semantic_mht_slam

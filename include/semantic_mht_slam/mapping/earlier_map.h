@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "semantic_mht_slam/common/config.h"
@@ -11,16 +10,13 @@ namespace semantic_mht_slam {
 
 /// What earlier passes know of the surroundings of a submap, and how far it may have drifted since.
 struct EarlierMap {
-  /// In the predicted frame of the submap: where it would be without drift since those passes. As the earlier passes
-  /// saw them, with the ids that they have now.
+  /// In the predicted frame of the submap: where it would be without drift since those passes. As the submaps that saw
+  /// them last have them, and under the names there.
   std::vector<MixtureLandmark> landmarks;
   double stddev_xy_m = 3.0;  ///< of the submap's origin in the predicted frame, each axis
   double stddev_z_m = 1.0;
   double stddev_yaw_rad = 0.03;
 };
-
-/// Asked for the earlier map when a submap begins; an empty list of landmarks: there is none.
-using EarlierMapProvider = std::function<EarlierMap(const Pose& T_odom_submap)>;
 
 /// Hypotheses over joint alignments against an earlier map.
 struct MapAlignmentConfig {

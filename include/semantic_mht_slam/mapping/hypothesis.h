@@ -33,7 +33,7 @@ struct Measurement {
 /// One time step for the tree.
 struct TreeInput {
   std::size_t frame = 0;
-  int submap = 0;
+  SubmapId submap;
   double driven_m = 0.0;                  ///< in this submap
   double step_m = 0.0;                    ///< driven since the frame before
   Pose T_submap_base;                     ///< by the odometry
@@ -54,8 +54,8 @@ struct TrackedLandmark {
   ClassProbs class_probs;
   int observations = 0;
   bool is_from_earlier_submap = false;  ///< case (ii): not seen in this submap so far
-  int first_submap = 0;
-  int last_submap = 0;
+  SubmapId first_submap;
+  SubmapId last_submap;
   double updated_at_m = 0.0;  ///< distance driven in the submap when it was last seen
   int earlier = -1;           ///< the landmark of the earlier map that it is; -1: none known
   bool is_expected = false;   ///< only the earlier map has it so far; its place follows the hypothesis's `map_offset`

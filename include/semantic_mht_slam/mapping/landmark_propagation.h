@@ -19,11 +19,11 @@ class LandmarkPropagation {
 
   /// A submap ends with these landmarks (its frame, by rising id), of which those go on that were seen within
   /// `propagation`. `best` is its likeliest hypothesis.
-  void endSubmap(int submap, const Pose& T_odom_submap, const std::vector<MixtureLandmark>& landmarks,
+  void endSubmap(SubmapId submap, const Pose& T_odom_submap, const std::vector<MixtureLandmark>& landmarks,
                  const MapHypothesis& best);
 
   /// A submap begins: the landmarks that it may see, in its frame, by rising id.
-  std::vector<HypothesisLandmark> beginSubmap(int submap, const Pose& T_odom_submap);
+  std::vector<HypothesisLandmark> beginSubmap(SubmapId submap, const Pose& T_odom_submap);
 
   /// Forgets all of them.
   void clear();
@@ -33,10 +33,10 @@ class LandmarkPropagation {
 
  private:
   void propagate(const Pose& T_new_old);
-  bool isOutOfReach(const TrackedLandmark& landmark, int submap) const;
+  bool isOutOfReach(const TrackedLandmark& landmark, SubmapId submap) const;
 
   double reach_m_;                             ///< from the beginning of a submap to what is seen from anywhere in it
-  int propagated_submaps_;                     ///< for how many submaps a landmark goes on without being seen
+  std::size_t propagated_submaps_;             ///< for how many submaps a landmark goes on without being seen
   std::vector<HypothesisLandmark> landmarks_;  ///< that go on, in the frame of the submap that ended last, by id
   std::vector<HypothesisLandmark> resting_;    ///< those that the present submap cannot see, its frame, by id
   Pose T_odom_last_;                           ///< of the submap that ended last

@@ -20,12 +20,6 @@ class StateArchive;
 /// common to all (uniform prior): many may be hidden together, or stand in another street.
 double logExpectationEvidence(int found, double missed);
 
-/// The end of a submap's comparison with the earlier map.
-struct MapConclusion {
-  MapAlignment alignment;
-  std::vector<MergedLandmark> merged;  ///< landmarks of the submap into those of the earlier map; empty if not accepted
-};
-
 /// Branches of a submap's hypotheses over where the submap lies in the earlier map ("shifted by 3 m and 2 degrees",
 /// "not here before"). A child with an alignment holds the offset as a Gaussian, knows which of its landmarks the
 /// earlier map has, and expects the others: they are case (ii) of the association, at a place that follows the offset.
@@ -51,13 +45,10 @@ class MapBranching {
 
   /// The alignment on which most weight agrees, from all landmarks of the submap; empty if no leaf has one. `leaves`
   /// are normalised.
-  std::optional<MapConclusion> conclude(const std::vector<MapHypothesis>& leaves) const;
+  std::optional<MapAlignment> conclude(const std::vector<MapHypothesis>& leaves) const;
 
   /// The earlier map of the present submap, and when it is looked at next (see `StateArchive`).
   void transfer(StateArchive& archive);
-
-  /// The landmark of the earlier map with an id that it has. Throws std::out_of_range for others.
-  const MixtureLandmark& landmark(LandmarkId id) const;
 
  private:
   using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "semantic_mht_slam/map/landmark.h"
-#include "semantic_mht_slam/place/scene.h"
+#include "semantic_mht_slam/map/scene.h"
 
 namespace semantic_mht_slam {
 

@@ -6,7 +6,7 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/map/landmark.h"
-#include "semantic_mht_slam/place/scene.h"
+#include "semantic_mht_slam/map/scene.h"
 
 namespace semantic_mht_slam {
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "semantic_mht_slam/map/scene.h"
 #include "semantic_mht_slam/place/covisibility.h"
-#include "semantic_mht_slam/place/scene.h"
 
 namespace semantic_mht_slam {
 

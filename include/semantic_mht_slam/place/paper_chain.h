@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 
 #include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/map/keyframe.h"
 #include "semantic_mht_slam/place/class_histogram.h"
 #include "semantic_mht_slam/place/covisibility.h"
 #include "semantic_mht_slam/place/histogram_index.h"
-#include "semantic_mht_slam/place/keyframe.h"
 #include "semantic_mht_slam/place/loop_filter.h"
 #include "semantic_mht_slam/place/place_match.h"
 #include "semantic_mht_slam/place/scene_score.h"
@@ -37,7 +37,7 @@ void describe(PaperChainConfig& config, Fields& fields);
 struct PaperCandidate {
   std::size_t place = 0;  ///< number of the earlier keyframe, in the order in which they were added
   std::size_t frame = 0;  ///< of the earlier keyframe
-  int submap = 0;         ///< of the earlier keyframe
+  SubmapId submap;        ///< of the earlier keyframe
   double histogram_divergence = -1.0;
   double scene_distance = -1.0;                ///< Euclidean distance of the scene histograms
   double topology_score = -2.0;                ///< S_ncc
@@ -75,7 +75,7 @@ class PaperChain {
   struct Place {
     std::size_t number = 0;
     std::size_t frame = 0;
-    int submap = 0;
+    SubmapId submap;
     double driven_m = 0.0;
     Scene scene;
     Eigen::MatrixXd laplacian;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/map/keyframe.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/place/class_histogram.h"
-#include "semantic_mht_slam/place/keyframe.h"
 #include "semantic_mht_slam/place/pair_descriptor.h"
 #include "semantic_mht_slam/place/paper_chain.h"
 #include "semantic_mht_slam/place/place_config.h"

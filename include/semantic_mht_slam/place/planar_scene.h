@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "semantic_mht_slam/map/scene.h"
 #include "semantic_mht_slam/models/class_table.h"
-#include "semantic_mht_slam/place/scene.h"
 
 namespace semantic_mht_slam {
 

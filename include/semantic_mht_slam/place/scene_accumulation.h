@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/map/scene.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/models/detection.h"
-#include "semantic_mht_slam/place/scene.h"
 
 namespace semantic_mht_slam {
 

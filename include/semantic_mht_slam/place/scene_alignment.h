@@ -6,9 +6,9 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/map/scene.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/place/planar_scene.h"
-#include "semantic_mht_slam/place/scene.h"
 
 namespace semantic_mht_slam {
 

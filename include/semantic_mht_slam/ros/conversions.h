@@ -17,7 +17,7 @@
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/models/detection.h"
-#include "semantic_mht_slam/slam/frame.h"
+#include "semantic_mht_slam/models/frame.h"
 
 namespace semantic_mht_slam {
 
@@ -56,7 +56,7 @@ SemanticMap toMessage(Stamp stamp, const std::string& map_frame, const ClassTabl
                       const std::vector<MixtureLandmark>& landmarks, std::size_t submaps);
 
 /// The leaves of the current submap's tree, most likely first.
-HypothesisTree toMessage(const Frame& frame, const std::string& map_frame, int submap,
+HypothesisTree toMessage(const Frame& frame, const std::string& map_frame, SubmapId submap,
                          const std::vector<MapHypothesis>& leaves);
 
 }  // namespace semantic_mht_slam

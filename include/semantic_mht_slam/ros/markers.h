@@ -10,8 +10,8 @@
 
 #include "semantic_mht_slam/app/live_config.h"
 #include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/models/frame.h"
 #include "semantic_mht_slam/perception/extracted_object.h"
-#include "semantic_mht_slam/slam/frame.h"
 
 namespace semantic_mht_slam {
 

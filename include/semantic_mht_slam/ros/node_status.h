@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/app/refused_input.h"
 #include "semantic_mht_slam/ros/failure_guard.h"
 #include "semantic_mht_slam/ros/topic_monitor.h"
+#include "semantic_mht_slam/slam/map_graph.h"
 
 namespace semantic_mht_slam {
 
@@ -26,6 +27,7 @@ struct EstimatorStatus {
   std::size_t landmarks = 0;  ///< of the finished submaps
   std::size_t submaps = 0;    ///< finished
   std::size_t loops = 0;      ///< accepted
+  GraphStatus graph;
 };
 
 /// Times that frames took, of the last 1000.

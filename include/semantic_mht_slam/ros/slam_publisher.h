@@ -12,6 +12,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/ros/correction_policy.h"
+#include "semantic_mht_slam/ros/graph_view.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 namespace semantic_mht_slam {
@@ -84,7 +85,7 @@ class SlamPublisher {
   std::optional<Pose> T_map_odom_;  ///< of the newest pose
   std::optional<Stamp> published_frame_;
   std::size_t published_submaps_ = 0;
-  std::size_t published_closures_ = 0;
+  ClosureNews closures_;
   std::size_t loops_ = 0;
   std::vector<Pose> odometry_;
   std::mutex trajectory_mutex_;

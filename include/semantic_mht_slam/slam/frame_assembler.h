@@ -6,7 +6,7 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
-#include "semantic_mht_slam/slam/frame.h"
+#include "semantic_mht_slam/models/frame.h"
 
 namespace semantic_mht_slam {
 

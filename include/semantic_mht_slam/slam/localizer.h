@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "semantic_mht_slam/common/config.h"
-#include "semantic_mht_slam/slam/back_end.h"
-#include "semantic_mht_slam/slam/frame.h"
+#include "semantic_mht_slam/models/frame.h"
+#include "semantic_mht_slam/slam/loop_closer.h"
 #include "semantic_mht_slam/slam/map_fix.h"
 
 namespace semantic_mht_slam {
@@ -26,18 +26,19 @@ struct LocalizerConfig {
 void describe(LocalizerConfig& config, Fields& fields);
 
 /// Finds the vehicle in a finished map and follows it, without changing the map. While it is lost, what was seen over
-/// the last metres is looked for among all keyframes by its objects alone (`BackEnd::locate`); the pose is believed
+/// the last metres is looked for among all keyframes by its objects alone (`LoopCloser::locate`); the pose is believed
 /// once two finds, some metres apart, agree. From then on the same scene is laid onto the map near the expected pose
 /// (`findInMap`). Without success for `lost_after_m` it is lost again.
 class Localizer {
  public:
-  explicit Localizer(const LocalizerConfig& config) : config_(config) {}
+  /// `revisit` says how fast the pose drifts.
+  Localizer(const LocalizerConfig& config, const RevisitConfig& revisit) : config_(config), revisit_config_(revisit) {}
 
   /// Where the vehicle is believed to be, from outside: tracking begins there, with `stddev_m` as its uncertainty.
   void expectAt(const Pose& T_map_odom, double stddev_m);
 
-  /// The next frame, with detections free of bias. True if it led to a fix.
-  bool add(const Frame& frame, const BackEnd& map);
+  /// The next frame, with calibrated detections (`Mapper::calibrated`). True if it led to a fix.
+  bool add(const Frame& frame, const Map& map, const LoopCloser& closer);
 
   bool isLocated() const { return is_located_; }
 
@@ -57,12 +58,13 @@ class Localizer {
   };
 
   Scene scene(const ClassTable& classes) const;
-  bool search(const Scene& scene, const BackEnd& map);
-  bool track(const Scene& scene, const BackEnd& map);
+  bool search(const Scene& scene, const Map& map, const LoopCloser& closer);
+  bool track(const Scene& scene, const Map& map, const LoopCloser& closer);
   bool agree(const Find& a, const Find& b) const;
   void settle(const Pose& T_map_odom);
 
   LocalizerConfig config_;
+  RevisitConfig revisit_config_;
   std::deque<Frame> window_;
   std::deque<double> window_driven_m_;
   double driven_m_ = 0.0;

@@ -2,9 +2,8 @@
 
 #include <vector>
 
+#include "semantic_mht_slam/map/map.h"
 #include "semantic_mht_slam/mapping/joint_alignment.h"
-#include "semantic_mht_slam/slam/keyframes.h"
-#include "semantic_mht_slam/slam/loop_closure_record.h"
 
 namespace semantic_mht_slam {
 
@@ -30,29 +29,23 @@ struct RevisitConfig {
 
 void describe(RevisitConfig& config, Fields& fields);
 
-/// Keyframes of the whole drive with their present poses.
-struct KeyframeMap {
-  std::vector<MapKeyframe> keyframes;
-  std::vector<Pose> T_map_keyframe;
-};
-
 /// How often the surroundings of a position were driven through: runs of successive keyframes within 10 m, seen from
 /// above.
-int passesAt(const KeyframeMap& map, const Eigen::Vector3d& position_m);
+std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m);
 
 /// How far the pose may be off from the earlier map after `drifted_m` of driving since it was last tied to it; in the
 /// frame of `T_map_base`.
 AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config);
 
 /// Lays a scene onto what each pass saw near the pose that `prior` expects. One record for each pass that it might fit;
-/// the query is no keyframe (-1).
-std::vector<LoopClosureRecord> findInMap(const KeyframeMap& map, const Scene& scene, const AlignmentPrior& prior,
+/// the query is no keyframe.
+std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const AlignmentPrior& prior,
                                          const ClassTable& classes, const RevisitConfig& config);
 
 /// Lays what a keyframe sees onto what each earlier pass, at least `min_driven_m` before, saw near there, all at once,
 /// with the drift since the last closure as prior (see `alignJointly`). One record for each pass that it might fit.
 /// `drifted_m` was driven since the pose was last tied to the earlier map.
-std::vector<LoopClosureRecord> findRevisits(const KeyframeMap& map, int query, double drifted_m,
+std::vector<LoopClosureRecord> findRevisits(const Map& map, KeyframeId query, double drifted_m,
                                             const ClassTable& classes, const RevisitConfig& config);
 
 }  // namespace semantic_mht_slam

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "semantic_mht_slam/common/pose.h"
 #include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/models/class_table.h"
 
@@ -21,5 +22,8 @@ struct SceneObject {
 struct Scene {
   std::vector<SceneObject> objects;
 };
+
+/// A landmark of a submap as the scene of a keyframe has it; `floor_m` is added to its deviation.
+SceneObject sceneObject(const MixtureLandmark& landmark, const Pose& T_keyframe_submap, double floor_m);
 
 }  // namespace semantic_mht_slam

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/common/pose.h"
-#include "semantic_mht_slam/graph/pose_graph.h"
+#include "semantic_mht_slam/common/pose_cov.h"
+#include "semantic_mht_slam/map/ids.h"
 #include "semantic_mht_slam/map/landmark.h"
 
 namespace semantic_mht_slam {
@@ -33,16 +33,17 @@ struct PlaceScores {
 /// A place that was recognised, or a candidate that was refused.
 struct LoopClosureRecord {
   ClosureSource source = ClosureSource::kRevisit;
-  int query_keyframe = 0;
-  int match_keyframe = 0;
-  bool is_accepted = false;
-  std::string reason;  ///< why it was refused; empty if accepted
-  double score = 0.0;  ///< of the check that decided; of a place, -1 if it did not come to the geometric check
-  PlaceScores place;   ///< only of kPlace
-  int inliers = 0;     ///< landmark pairs that agree
+  KeyframeId query_keyframe;  ///< none: what was seen belongs to no keyframe
+  KeyframeId match_keyframe;
+  bool is_verified = false;  ///< it passed the checks of its search; whether it holds is decided by the pose graph
+  bool is_accepted = false;  ///< it holds
+  std::string reason;        ///< why it was refused; empty if accepted
+  double score = 0.0;        ///< of the check that decided; of a place, -1 if it did not come to the geometric check
+  PlaceScores place;         ///< only of kPlace
+  int inliers = 0;           ///< landmark pairs that agree
   Pose T_match_query;
   PoseCov cov = PoseCov::Identity();                     ///< of T_match_query
-  std::vector<std::pair<LandmarkId, LandmarkId>> pairs;  ///< landmark of the query, the same landmark before
+  std::vector<std::pair<LandmarkId, LandmarkId>> pairs;  ///< landmark of the query, the same one before
 };
 
 }  // namespace semantic_mht_slam

@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/slam/loop_closure_record.h"
+#include "semantic_mht_slam/map/loop_closure_record.h"
 
 namespace semantic_mht_slam {
 

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/map/identity.h"
+#include "semantic_mht_slam/map/ids.h"
+#include "semantic_mht_slam/map/keyframe.h"
+#include "semantic_mht_slam/map/loop_closure_record.h"
+#include "semantic_mht_slam/map/submap.h"
+
+namespace semantic_mht_slam {
+
+class StateArchive;
+
+/// What a solution of the pose graph says of the map.
+struct GraphUpdate {
+  std::vector<Pose> T_map_keyframe;        ///< of every keyframe; empty: as they were
+  std::vector<ClosureDecision> decisions;  ///< of verified closures, where they differ from the last ones
+  std::string failure;                     ///< empty, or why the poses are as they were
+};
+
+/// The map: finished submaps, keyframes cut from them with their poses, loop closures, landmarks, and which names mean
+/// the same one. The only owner of each of these.
+class Map {
+ public:
+  using Visit = std::function<void(SubmapId submap, const MixtureLandmark& landmark)>;
+
+  /// Landmarks with less existence probability are kept to be seen again, but are not part of the map.
+  explicit Map(double keep_prob) : keep_prob_(keep_prob) {}
+
+  /// Takes the next submap with its keyframes, at least one, which begin where the submap begins. Their poses come with
+  /// the next update.
+  IdRange<KeyframeId> add(std::shared_ptr<const Submap> submap, std::vector<Keyframe> keyframes);
+
+  /// Takes a closure that was looked at. One that is verified holds once an update says so.
+  ClosureId add(LoopClosureRecord closure);
+
+  void apply(const GraphUpdate& update);
+
+  const IdVector<SubmapId, std::shared_ptr<const Submap>>& submaps() const { return submaps_; }
+  const IdVector<KeyframeId, Keyframe>& keyframes() const { return keyframes_; }
+  const IdVector<ClosureId, LoopClosureRecord>& closures() const { return closures_; }
+  const Identity& identity() const { return identity_; }
+
+  /// The landmarks with other names than at the last call (see `Identity::takeChanges`).
+  std::vector<std::vector<LandmarkId>> takeChanges() { return identity_.takeChanges(); }
+
+  const Pose& T_map_keyframe(KeyframeId keyframe) const { return T_map_keyframe_[keyframe]; }
+  const IdVector<KeyframeId, Pose>& T_map_keyframes() const { return T_map_keyframe_; }
+
+  /// A submap begins with its first keyframe.
+  const Pose& T_map_submap(SubmapId submap) const { return T_map_keyframe_[first_keyframe_[submap]]; }
+
+  IdRange<KeyframeId> keyframesOf(SubmapId submap) const;
+
+  /// Distance driven at the newest keyframe that a closure ties to an earlier one; 0 without any.
+  double closedAt_m() const;
+
+  /// Shows the landmarks of the map by rising id, each with the submap that saw it last, as that submap has it and in
+  /// its frame; counts and existence are those of all its names.
+  void forEachLandmark(const Visit& visit) const;
+
+  /// The same for the landmarks that one submap saw last; `name` is what that submap calls it.
+  void forEachLandmarkOf(SubmapId submap,
+                         const std::function<void(LandmarkId name, const MixtureLandmark& landmark)>& visit) const;
+
+  /// Distance from a submap's origin within which it has all its landmarks.
+  double reach_m(SubmapId submap) const { return reach_m_[submap]; }
+
+  /// Every detection of the finished submaps with the landmark of the map that it belongs to; kNoLandmark for false
+  /// positives and for landmarks that did not make it into the map.
+  std::vector<DetectionAssociation> associations() const;
+
+  /// Into an empty map, or out of one (see `StateArchive`): the submaps; then the rest. Sightings are not kept.
+  void transferSubmaps(StateArchive& archive);
+  void transferKeyframes(StateArchive& archive, int classes, double scene_floor_m);
+
+ private:
+  /// Where a landmark was seen last.
+  struct LastSeen {
+    SubmapId submap;
+    LandmarkId name = kNoLandmark;
+  };
+
+  void noteLandmarks(SubmapId submap);
+  void placeAgain(const std::set<LandmarkId>& names);
+  void place(LandmarkId landmark);
+  const MixtureLandmark* newest(LandmarkId name) const;
+  MixtureLandmark landmark(LandmarkId id, const LastSeen& seen) const;
+  bool isKept(LandmarkId landmark) const;
+  void restore();
+
+  double keep_prob_;
+  IdVector<SubmapId, std::shared_ptr<const Submap>> submaps_;
+  IdVector<SubmapId, KeyframeId> first_keyframe_;
+  IdVector<SubmapId, double> reach_m_;
+  IdVector<KeyframeId, Keyframe> keyframes_;
+  IdVector<KeyframeId, Pose> T_map_keyframe_;
+  IdVector<ClosureId, LoopClosureRecord> closures_;
+  Identity identity_;
+  std::map<LandmarkId, SubmapId> newest_submap_;           ///< with a landmark of a name
+  std::map<LandmarkId, LastSeen> last_seen_;               ///< by landmark
+  IdVector<SubmapId, std::set<LandmarkId>> last_seen_in_;  ///< landmarks, by submap
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/place/place_recognizer.h"
+#include "semantic_mht_slam/place/submap_evaluator.h"
+#include "semantic_mht_slam/slam/back_end_config.h"
+
+namespace semantic_mht_slam {
+
+class StateArchive;
+
+/// Where a submap that begins is believed to be, and where the keyframes were believed to be at that time.
+struct SubmapPrediction {
+  AlignmentPrior prior;  ///< of T_map_submap
+  IdVector<KeyframeId, Pose> T_map_keyframe;
+};
+
+void transfer(StateArchive& archive, SubmapPrediction& prediction);
+
+/// Whether a finished submap was searched for places seen before.
+struct SubmapCheck {
+  bool is_checked = false;
+  SubmapEvaluation evaluation;
+};
+
+/// What is looked for in the earlier map.
+struct ClosureQuery {
+  IdRange<KeyframeId> keyframes;          ///< of the newest submap
+  std::optional<MapAlignment> alignment;  ///< of that submap, found by its hypotheses
+  SubmapPrediction prediction;            ///< that the alignment begins from
+  double tied_at_m = 0.0;  ///< distance driven when the pose was last known, by other means than closures
+};
+
+/// Finds places that were seen before, and checks them; does not change the map.
+class LoopCloser {
+ public:
+  /// Throws InputError if the evaluator's tree is needed and cannot be used.
+  LoopCloser(const BackEndConfig& config, const ClassTable& classes);
+
+  /// Takes the newest submap of the map in. The queries after this are about it.
+  void add(const Map& map);
+
+  /// Closures of one source that were looked at; those that passed every check are verified. Of each source once a
+  /// submap, in the order of `sources`: what one finds may correct the poses for the next.
+  std::vector<LoopClosureRecord> find(ClosureSource source, const Map& map, const ClosureQuery& query);
+
+  /// The sources that are switched on.
+  std::vector<ClosureSource> sources() const;
+
+  /// Where a submap begins that is believed to begin at `T_map_submap`, `drifted_m` after its pose was known.
+  SubmapPrediction predict(const Map& map, const Pose& T_map_submap, double drifted_m) const;
+
+  /// Where a scene is in the map, by its objects alone; needs a second find that agrees. Empty if it is not recognised.
+  std::optional<Pose> locate(const Map& map, const Scene& scene) const;
+
+  /// Where a scene is in the map near an expected pose, `drifted_m` after it was known; empty if that is not clear.
+  std::optional<Pose> findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double drifted_m) const;
+
+  /// Of every finished submap.
+  const IdVector<SubmapId, SubmapCheck>& checks() const { return checks_; }
+
+  const ClassTable& classes() const { return classes_; }
+
+  /// Into an empty one, or out of one (see `StateArchive`).
+  void transfer(StateArchive& archive, const Map& map);
+
+ private:
+  std::vector<Pose> placePoses(const Map& map) const;
+  bool isSearched(KeyframeId keyframe) const;
+  std::vector<LoopClosureRecord> closeByHypotheses(const Map& map, const ClosureQuery& query) const;
+  std::vector<LoopClosureRecord> recognisePlaces(const Map& map, const ClosureQuery& query);
+  std::vector<LoopClosureRecord> revisits(const Map& map, const ClosureQuery& query) const;
+
+  BackEndConfig config_;
+  ClassTable classes_;
+  SubmapEvaluator evaluator_;
+  PlaceRecognizer places_;
+  std::vector<KeyframeId> keyframe_of_place_;
+  IdVector<SubmapId, SubmapCheck> checks_;
+};
+
+}  // namespace semantic_mht_slam

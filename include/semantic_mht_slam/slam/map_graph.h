@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "semantic_mht_slam/graph/pose_graph.h"
+#include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/models/odometry_noise.h"
+#include "semantic_mht_slam/slam/back_end_config.h"
+
+namespace semantic_mht_slam {
+
+class StateArchive;
+
+/// How the pose graph fares. Where it cannot be solved, the estimate before stays.
+struct GraphStatus {
+  std::size_t failures = 0;    ///< solutions that failed
+  std::string newest_failure;  ///< what the solver said
+};
+
+/// The pose graph of a map: a node a keyframe, a point a landmark, a factor a verified closure.
+class MapGraph {
+ public:
+  MapGraph(const BackEndConfig& config, const OdometryNoise& odometry, const ClassTable& classes);
+
+  /// New keyframes, with what each saw.
+  void add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings);
+
+  /// The next keyframe follows the ones before by a pose in the map, known within about a metre, not by odometry.
+  void goOnAt(const Pose& T_map_odom) { T_map_odom_start_ = T_map_odom; }
+
+  /// Takes the closures of the map that are verified and new, and decides which of them agree with the odometry and
+  /// with each other.
+  [[nodiscard]] GraphUpdate review(const Map& map);
+
+  /// Makes one point of the names of each landmark that has `changed` (see `Map::takeChanges`), and solves.
+  [[nodiscard]] GraphUpdate optimize(const std::vector<std::vector<LandmarkId>>& changed);
+
+  /// The same for the whole graph at once.
+  [[nodiscard]] GraphUpdate optimizeFully(const std::vector<std::vector<LandmarkId>>& changed);
+
+  /// Correction of the odometry at the newest keyframe.
+  Pose T_map_odom(const Map& map) const;
+
+  /// Corrected position of a landmark, map frame; empty if it is not in the graph.
+  std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;
+
+  const GraphStatus& status() const { return status_; }
+
+  /// Into an empty graph, or out of one (see `StateArchive`).
+  void transfer(StateArchive& archive, const Map& map);
+
+ private:
+  PoseNode nodeOf(const Map& map, KeyframeId keyframe, const std::vector<Sighting>& sightings);
+  void regroup(const std::vector<std::vector<LandmarkId>>& changed);
+  std::vector<ClosureDecision> decisionsOf(const std::vector<LoopDecision>& decisions) const;
+  GraphUpdate updateOf(const PoseGraphUpdate& update);
+
+  BackEndConfig config_;
+  OdometryNoise odometry_noise_;
+  ClassTable classes_;
+  PoseGraph graph_;
+  GraphStatus status_;
+  std::vector<ClosureId> closure_of_factor_;
+  ClosureId next_closure_{0};             ///< the first that was not looked at
+  std::optional<Pose> T_map_odom_start_;  ///< of a session that has no keyframe yet
+};
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/slam/trajectory_record.h"
+
+namespace semantic_mht_slam {
+
+class StateArchive;
+
+/// The odometry of all drives, and where the vehicle was found in the map without being mapped. A session is a stretch
+/// of one odometry.
+class Sessions {
+ public:
+  /// A sample T_odom_base of the present session.
+  void add(const StampedPose& T_odom_base) { odometry_.push_back(T_odom_base); }
+
+  /// Another odometry begins; `next` is the keyframe that the map gets next.
+  void begin(KeyframeId next);
+
+  /// A pose found by localization.
+  void add(const MapFix& fix) { sessions_.back().fixes.push_back(fix); }
+
+  /// The newest sample of the present session; empty before the first.
+  std::optional<StampedPose> latestOdometry() const;
+
+  /// The newest fix of the present session; null without any.
+  const MapFix* latestFix() const;
+
+  /// What the trajectory is put together from: odometry, keyframes and fixes.
+  TrajectoryRecord record(const Map& map) const;
+
+  void transfer(StateArchive& archive);
+
+ private:
+  struct Session {
+    std::size_t first_odometry = 0;
+    KeyframeId first_keyframe{0};
+    std::vector<MapFix> fixes;
+
+    void transfer(StateArchive& archive);
+  };
+
+  std::vector<StampedPose> odometry_;
+  std::vector<Session> sessions_{1};
+};
+
+}  // namespace semantic_mht_slam

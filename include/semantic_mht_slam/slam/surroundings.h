@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/mapping/earlier_map.h"
+#include "semantic_mht_slam/slam/map_graph.h"
+
+namespace semantic_mht_slam {
+
+/// The landmarks of a map at their corrected places, map frame, by rising id.
+std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph);
+
+/// What earlier passes know of the surroundings of a submap that begins where `prior` says; what was seen in the newest
+/// `recent_submaps` submaps is of the present pass.
+EarlierMap earlierMapAround(const AlignmentPrior& prior, const Map& map, const MapGraph& graph,
+                            std::size_t recent_submaps);
+
+/// True if a closure ties the newest submap to an earlier pass, and every place of it was passed at least `passes`
+/// times; false for 0.
+bool isPlaceKnown(const Map& map, std::size_t passes);
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,152 @@
+#include "semantic_mht_slam/map/map.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace semantic_mht_slam {
+
+IdRange<KeyframeId> Map::add(std::shared_ptr<const Submap> submap, std::vector<Keyframe> keyframes) {
+  if (keyframes.empty()) throw std::invalid_argument("Map: a submap without keyframes");
+  if (submap->id != submaps_.nextId()) throw std::invalid_argument("Map: submaps must come in their order");
+  const KeyframeId first = keyframes_.nextId();
+  first_keyframe_.push_back(first);
+  for (Keyframe& keyframe : keyframes) {
+    keyframe.submap = submap->id;
+    keyframes_.push_back(std::move(keyframe));
+  }
+  identity_.add(*submap);
+  noteLandmarks(submaps_.push_back(std::move(submap)));
+  return keyframes_.idsFrom(first);
+}
+
+ClosureId Map::add(LoopClosureRecord closure) {
+  closure.is_accepted = false;  // until it is decided
+  const ClosureId id = closures_.push_back(std::move(closure));
+  if (closures_[id].is_verified) identity_.add(id, closures_[id].pairs);
+  return id;
+}
+
+void Map::apply(const GraphUpdate& update) {
+  if (!update.T_map_keyframe.empty()) {
+    T_map_keyframe_ = IdVector<KeyframeId, Pose>(update.T_map_keyframe);
+  }
+  for (const auto& [id, holds] : update.decisions) {
+    LoopClosureRecord& closure = closures_[id];
+    closure.is_accepted = holds;
+    closure.reason = holds ? "" : "refused by the pose graph";
+  }
+  identity_.decide(update.decisions);
+  placeAgain(identity_.changedNames());
+}
+
+IdRange<KeyframeId> Map::keyframesOf(SubmapId submap) const {
+  SubmapId next = submap;
+  ++next;
+  return {first_keyframe_[submap], first_keyframe_.has(next) ? first_keyframe_[next] : keyframes_.nextId()};
+}
+
+double Map::closedAt_m() const {
+  double closed_at_m = 0.0;
+  for (const LoopClosureRecord& closure : closures_) {
+    if (closure.is_accepted) closed_at_m = std::max(closed_at_m, keyframes_[closure.query_keyframe].driven_m);
+  }
+  return closed_at_m;
+}
+
+/// Takes the landmarks of the newest submap in.
+void Map::noteLandmarks(SubmapId submap) {
+  double reach_m = 0.0;
+  std::set<LandmarkId> names(identity_.changedNames());
+  for (const MixtureLandmark& landmark : submaps_[submap]->landmarks) {
+    reach_m = std::max(reach_m, landmark.position.mean_m.norm());
+    newest_submap_[landmark.id] = submap;
+    names.insert(landmark.id);
+  }
+  reach_m_.push_back(reach_m);
+  last_seen_in_.push_back({});
+  placeAgain(names);
+}
+
+/// Finds again where the landmarks of these names were seen last; all names of each that was split or merged are there.
+void Map::placeAgain(const std::set<LandmarkId>& names) {
+  std::set<LandmarkId> landmarks;
+  for (const LandmarkId name : names) {
+    landmarks.insert(identity_.landmarkOf(name));
+    const auto known = last_seen_.find(name);
+    if (known == last_seen_.end()) continue;
+    last_seen_in_[known->second.submap].erase(name);
+    last_seen_.erase(known);
+  }
+  for (const LandmarkId landmark : landmarks) place(landmark);
+}
+
+void Map::place(LandmarkId landmark) {
+  LastSeen seen;
+  for (const LandmarkId name : identity_.namesOf(landmark)) {
+    const auto newest = newest_submap_.find(name);
+    if (newest == newest_submap_.end()) continue;
+    if (seen.submap.isNone() || newest->second > seen.submap) seen = {newest->second, name};
+  }
+  const auto known = last_seen_.find(landmark);
+  if (known != last_seen_.end()) last_seen_in_[known->second.submap].erase(landmark);
+  if (seen.submap.isNone()) return;
+  last_seen_[landmark] = seen;
+  last_seen_in_[seen.submap].insert(landmark);
+}
+
+const MixtureLandmark* Map::newest(LandmarkId name) const {
+  const auto submap = newest_submap_.find(name);
+  return submap == newest_submap_.end() ? nullptr : findLandmark(name, submaps_[submap->second]->landmarks);
+}
+
+MixtureLandmark Map::landmark(LandmarkId id, const LastSeen& seen) const {
+  MixtureLandmark result = *newest(seen.name);
+  result.id = id;
+  result.merged_ids = identity_.namesOf(id);
+  result.merged_ids.erase(result.merged_ids.begin());
+  for (const LandmarkId name : identity_.namesOf(id)) {
+    const MixtureLandmark* other = newest(name);
+    if (other == nullptr || name == seen.name) continue;
+    result.observations += other->observations;
+    result.existence_prob = std::max(result.existence_prob, other->existence_prob);
+    result.first_submap = std::min(result.first_submap, other->first_submap);
+  }
+  return result;
+}
+
+bool Map::isKept(LandmarkId landmark) const {
+  const std::vector<LandmarkId> names = identity_.namesOf(landmark);
+  return std::any_of(names.begin(), names.end(), [this](LandmarkId name) {
+    const MixtureLandmark* known = newest(name);
+    return known != nullptr && known->existence_prob >= keep_prob_;
+  });
+}
+
+void Map::forEachLandmark(const Visit& visit) const {
+  for (const auto& [id, seen] : last_seen_) {
+    if (isKept(id)) visit(seen.submap, landmark(id, seen));
+  }
+}
+
+void Map::forEachLandmarkOf(SubmapId submap,
+                            const std::function<void(LandmarkId name, const MixtureLandmark& landmark)>& visit) const {
+  for (const LandmarkId id : last_seen_in_[submap]) {
+    const LastSeen& seen = last_seen_.at(id);
+    if (isKept(id)) visit(seen.name, landmark(id, seen));
+  }
+}
+
+std::vector<DetectionAssociation> Map::associations() const {
+  std::vector<DetectionAssociation> result;
+  for (const auto& submap : submaps_) {
+    for (DetectionAssociation association : submap->associations) {
+      association.landmark = identity_.landmarkOf(association.landmark);
+      if (!isKept(association.landmark)) association.landmark = kNoLandmark;
+      result.push_back(association);
+    }
+  }
+  return result;
+}
+
+}  // namespace semantic_mht_slam

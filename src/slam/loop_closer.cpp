@@ -1,0 +1,196 @@
+#include "semantic_mht_slam/slam/loop_closer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+/// Covariance of a step on the right of T_a_b from that of the position and heading of b in the axes of a.
+PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_a_b, double tilt_stddev_rad) {
+  const Eigen::Matrix3d R_b_a = T_a_b.rotation.toRotationMatrix().transpose();
+  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
+  J.topLeftCorner<3, 3>() = R_b_a;
+  J.block<3, 1>(3, 3) = R_b_a.col(2);
+  PoseCov result = J * cov * J.transpose();
+  result.diagonal().tail<3>().array() += tilt_stddev_rad * tilt_stddev_rad;
+  return 0.5 * (result + result.transpose());
+}
+
+LoopClosureRecord toRecord(PlaceMatch match, const std::vector<KeyframeId>& keyframe_of_place) {
+  LoopClosureRecord record;
+  record.source = ClosureSource::kPlace;
+  record.query_keyframe = keyframe_of_place[match.query];
+  record.match_keyframe = keyframe_of_place[match.match];
+  record.is_verified = match.accepted;
+  record.reason = reasonText(match.refusal);
+  record.score = match.verification_score;
+  record.place = {match.histogram_divergence, match.descriptor_score, match.topology_score, match.scene_score,
+                  match.loop_prob};
+  record.inliers = match.inliers;
+  record.T_match_query = match.T_match_query;
+  record.cov = match.cov;
+  record.pairs = std::move(match.pairs);
+  return record;
+}
+
+}  // namespace
+
+void transfer(StateArchive& archive, SubmapPrediction& prediction) {
+  auto& [prior, T_map_keyframe] = prediction;
+  auto& [T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = prior;
+  archive(T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad, T_map_keyframe);
+}
+
+LoopCloser::LoopCloser(const BackEndConfig& config, const ClassTable& classes)
+    : config_(config),
+      classes_(classes),
+      evaluator_(makeSubmapEvaluator(config.evaluator, config.evaluator.tree, classes.size())),
+      places_(config.place, classes) {}
+
+std::vector<ClosureSource> LoopCloser::sources() const {
+  if (!config_.close_loops) return {};
+  std::vector<ClosureSource> sources = {ClosureSource::kHypotheses};
+  if (config_.recognise_places) sources.push_back(ClosureSource::kPlace);
+  if (config_.revisit.enabled) sources.push_back(ClosureSource::kRevisit);
+  return sources;
+}
+
+void LoopCloser::add(const Map& map) {
+  checks_.push_back({false, evaluator_.add(*map.submaps().back())});
+}
+
+std::vector<LoopClosureRecord> LoopCloser::find(ClosureSource source, const Map& map, const ClosureQuery& query) {
+  if (source == ClosureSource::kHypotheses) return closeByHypotheses(map, query);
+  return source == ClosureSource::kPlace ? recognisePlaces(map, query) : revisits(map, query);
+}
+
+bool LoopCloser::isSearched(KeyframeId keyframe) const {
+  return keyframe.index() % config_.closure_stride == 0;
+}
+
+std::vector<Pose> LoopCloser::placePoses(const Map& map) const {
+  std::vector<Pose> poses;
+  for (const KeyframeId keyframe : keyframe_of_place_) poses.push_back(map.T_map_keyframe(keyframe));
+  return poses;
+}
+
+std::vector<LoopClosureRecord> LoopCloser::recognisePlaces(const Map& map, const ClosureQuery& query) {
+  std::vector<Keyframe> keyframes;
+  for (const KeyframeId id : query.keyframes) {
+    if (!isSearched(id)) continue;
+    keyframes.push_back(map.keyframes()[id]);
+    keyframe_of_place_.push_back(id);
+  }
+  SubmapCheck& check = checks_.back();
+  check.is_checked = check.evaluation.worth_checking;
+  const SubmapSummary summary{classHistogram(map.submaps().back()->landmarks, classes_.size()), check.is_checked};
+  std::vector<LoopClosureRecord> records;
+  for (PlaceMatch& match : places_.process(std::move(keyframes), placePoses(map), summary)) {
+    records.push_back(toRecord(std::move(match), keyframe_of_place_));
+  }
+  return records;
+}
+
+SubmapPrediction LoopCloser::predict(const Map& map, const Pose& T_map_submap, double drifted_m) const {
+  return {driftPrior(T_map_submap, drifted_m, config_.revisit), map.T_map_keyframes()};
+}
+
+std::vector<LoopClosureRecord> LoopCloser::closeByHypotheses(const Map& map, const ClosureQuery& query) const {
+  if (!query.alignment) return {};
+  const MapAlignment& alignment = *query.alignment;
+  const IdVector<KeyframeId, Pose>& T_map_keyframe = query.prediction.T_map_keyframe;
+  const Pose T_map_submap = query.prediction.prior.T_a_b * alignment.T_earlier_submap;
+  const KeyframeId first = query.keyframes.front();
+  KeyframeId nearest;
+  const auto distance = [&](KeyframeId k) {
+    return (T_map_keyframe[k].translation_m - T_map_submap.translation_m).norm();
+  };
+  for (const KeyframeId k : T_map_keyframe.ids()) {
+    if (map.keyframes()[first].driven_m - map.keyframes()[k].driven_m < config_.revisit.min_driven_m) break;
+    if (nearest.isNone() || distance(k) < distance(nearest)) nearest = k;
+  }
+  if (nearest.isNone()) return {};
+  LoopClosureRecord record;
+  record.source = ClosureSource::kHypotheses;
+  record.query_keyframe = first;
+  record.match_keyframe = nearest;
+  record.is_verified = alignment.is_accepted;
+  if (!alignment.is_accepted) record.reason = "the hypotheses do not agree";
+  record.score = alignment.weight;
+  record.inliers = alignment.matches;
+  record.T_match_query = T_map_keyframe[nearest].inverse() * T_map_submap;
+  record.cov = stepCov(alignment.cov, alignment.T_earlier_submap, config_.revisit.alignment.tilt_stddev_rad);
+  record.pairs = alignment.pairs;
+  return {std::move(record)};
+}
+
+std::vector<LoopClosureRecord> LoopCloser::revisits(const Map& map, const ClosureQuery& query) const {
+  const double tied_at_m = std::max(query.tied_at_m, map.closedAt_m());
+  std::vector<LoopClosureRecord> found;
+  for (const KeyframeId keyframe : query.keyframes) {
+    if (!isSearched(keyframe)) continue;
+    const double drifted_m = std::max(0.0, map.keyframes()[keyframe].driven_m - tied_at_m);
+    for (auto& record : findRevisits(map, keyframe, drifted_m, classes_, config_.revisit)) {
+      found.push_back(std::move(record));
+    }
+  }
+  return found;
+}
+
+std::optional<Pose> LoopCloser::locate(const Map& map, const Scene& scene) const {
+  const std::vector<Pose> poses = placePoses(map);
+  const std::vector<PlaceMatch> matches = places_.locate(scene, poses);
+  if (matches.empty()) return std::nullopt;
+  const PlaceMatch& best = matches.front();
+  // A match that passed every check but would not be believed alone is one of two that confirm each other.
+  if (!best.accepted && best.refusal != PlaceRefusal::kUnsupported) return std::nullopt;
+  return poses[best.match] * best.T_match_query;
+}
+
+std::optional<Pose> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base,
+                                         double drifted_m) const {
+  const AlignmentPrior prior = driftPrior(T_map_base, drifted_m, config_.revisit);
+  const LoopClosureRecord* best = nullptr;
+  const std::vector<LoopClosureRecord> records = findInMap(map, scene, prior, classes_, config_.revisit);
+  for (const LoopClosureRecord& record : records) {
+    if (record.is_verified && (best == nullptr || record.score > best->score)) best = &record;
+  }
+  if (best == nullptr) return std::nullopt;
+  return map.T_map_keyframe(best->match_keyframe) * best->T_match_query;
+}
+
+void transfer(StateArchive& archive, SubmapFeatures& features) {
+  auto& [entropy, tf_idf, landmarks] = features;
+  archive(entropy, tf_idf, landmarks);
+}
+
+void transfer(StateArchive& archive, SubmapCheck& check) {
+  auto& [is_checked, evaluation] = check;
+  auto& [features, good_prob, worth_checking] = evaluation;
+  archive(is_checked, features, good_prob, worth_checking);
+}
+
+void LoopCloser::transfer(StateArchive& archive, const Map& map) {
+  archive(keyframe_of_place_, checks_);
+  if (checks_.size() != map.submaps().size()) StateArchive::fail("a submap that was not evaluated");
+  for (const KeyframeId keyframe : keyframe_of_place_) {
+    if (!map.keyframes().has(keyframe)) StateArchive::fail("a place that is no keyframe");
+  }
+  IdVector<SubmapId, PlacesOfSubmap> places;
+  if (archive.isReading()) {
+    for (const auto& submap : map.submaps()) {
+      evaluator_.add(*submap);  // counts the rarity of classes again
+      places.push_back({classHistogram(submap->landmarks, classes_.size()), {}});
+    }
+    for (const KeyframeId id : keyframe_of_place_) {
+      const Keyframe& keyframe = map.keyframes()[id];
+      places[keyframe.submap].keyframes.push_back(keyframe);
+    }
+  }
+  places_.transfer(archive, {places.begin(), places.end()});
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,129 @@
+#include "semantic_mht_slam/slam/map_graph.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr double kSessionStddev_m = 1.0;  // of a pose by localization
+constexpr double kSessionStddev_rad = 0.03;
+constexpr double kLeastStep_m = 0.1;  // that odometry is uncertain by, however little was driven
+
+PoseCov poseCov(double stddev_m, double stddev_rad) {
+  PoseCov cov = PoseCov::Zero();
+  cov.diagonal().head<3>().setConstant(stddev_m * stddev_m);
+  cov.diagonal().tail<3>().setConstant(stddev_rad * stddev_rad);
+  return cov;
+}
+
+}  // namespace
+
+MapGraph::MapGraph(const BackEndConfig& config, const OdometryNoise& odometry, const ClassTable& classes)
+    : config_(config), odometry_noise_(odometry), classes_(classes), graph_(config.graph) {}
+
+void MapGraph::add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings) {
+  auto seen = sightings.begin();
+  for (const KeyframeId keyframe : keyframes) graph_.addNode(nodeOf(map, keyframe, *seen++));
+}
+
+PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings) {
+  const Keyframe& keyframe = map.keyframes()[id];
+  PoseNode node;
+  if (id == KeyframeId(0)) {
+    node.T_previous_node = keyframe.T_odom_base;
+  } else {
+    const Keyframe& previous = map.keyframes()[KeyframeId(id.index() - 1)];
+    const double distance_m = std::max(kLeastStep_m, keyframe.driven_m - previous.driven_m);
+    node.T_previous_node = previous.T_odom_base.inverse() * keyframe.T_odom_base;
+    node.odometry_cov = distance_m * poseCov(odometry_noise_.stddev_m, odometry_noise_.stddev_rad);
+  }
+  if (T_map_odom_start_ && !map.T_map_keyframes().empty()) {
+    node.T_previous_node = map.T_map_keyframes().back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
+    node.odometry_cov = poseCov(kSessionStddev_m, kSessionStddev_rad);
+  }
+  T_map_odom_start_.reset();
+  for (const Sighting& sighting : sightings) {
+    const ClassInfo& info = classes_[sighting.class_index];
+    if (!config_.landmark_factors || !info.is_static || info.transition != Transition::kDirac) continue;
+    node.sightings.push_back({static_cast<std::int64_t>(sighting.landmark), sighting.position_m, sighting.cov_m2});
+  }
+  return node;
+}
+
+GraphUpdate MapGraph::review(const Map& map) {
+  for (const ClosureId id : map.closures().idsFrom(next_closure_)) {
+    const LoopClosureRecord& closure = map.closures()[id];
+    if (!closure.is_verified) continue;
+    LoopConstraint loop;
+    loop.from = static_cast<int>(closure.match_keyframe.index());
+    loop.to = static_cast<int>(closure.query_keyframe.index());
+    loop.T_from_to = closure.T_match_query;
+    loop.cov = config_.loop_cov_scale * closure.cov;
+    loop.cov.diagonal().head<3>().array() += config_.loop_floor_m * config_.loop_floor_m;
+    loop.cov.diagonal().tail<3>().array() += config_.loop_floor_rad * config_.loop_floor_rad;
+    graph_.addLoopClosure(loop);
+    closure_of_factor_.push_back(id);
+  }
+  next_closure_ = map.closures().nextId();
+  GraphUpdate update;
+  update.decisions = decisionsOf(graph_.decide());
+  return update;
+}
+
+GraphUpdate MapGraph::optimize(const std::vector<std::vector<LandmarkId>>& changed) {
+  regroup(changed);
+  return updateOf(graph_.optimize());
+}
+
+GraphUpdate MapGraph::optimizeFully(const std::vector<std::vector<LandmarkId>>& changed) {
+  regroup(changed);
+  return updateOf(graph_.optimizeFully());
+}
+
+void MapGraph::regroup(const std::vector<std::vector<LandmarkId>>& changed) {
+  std::vector<std::vector<std::int64_t>> groups;
+  for (const std::vector<LandmarkId>& names : changed) groups.emplace_back(names.begin(), names.end());
+  graph_.regroup(groups);
+}
+
+std::vector<ClosureDecision> MapGraph::decisionsOf(const std::vector<LoopDecision>& decisions) const {
+  std::vector<ClosureDecision> result;
+  for (const LoopDecision& decision : decisions) {
+    result.push_back({closure_of_factor_[decision.loop], decision.state == LoopState::kAccepted});
+  }
+  return result;
+}
+
+GraphUpdate MapGraph::updateOf(const PoseGraphUpdate& update) {
+  if (!update.failure.empty()) {
+    ++status_.failures;
+    status_.newest_failure = update.failure;
+  }
+  return {graph_.poses(), decisionsOf(update.loop_changes), update.failure};
+}
+
+Pose MapGraph::T_map_odom(const Map& map) const {
+  if (T_map_odom_start_) return *T_map_odom_start_;
+  if (map.T_map_keyframes().empty()) return Pose::identity();
+  return map.T_map_keyframes().back() * map.keyframes().back().T_odom_base.inverse();
+}
+
+std::optional<Eigen::Vector3d> MapGraph::landmark(LandmarkId id) const {
+  return graph_.landmark(static_cast<std::int64_t>(id));
+}
+
+void MapGraph::transfer(StateArchive& archive, const Map& map) {
+  archive(graph_, T_map_odom_start_);
+  if (graph_.nodes() != static_cast<int>(map.keyframes().size())) StateArchive::fail("a graph of other keyframes");
+  if (!archive.isReading()) return;
+  next_closure_ = map.closures().nextId();
+  for (const ClosureId id : map.closures().ids()) {
+    if (map.closures()[id].is_verified) closure_of_factor_.push_back(id);
+  }
+  if (closure_of_factor_.size() != graph_.loopDecisions().size()) StateArchive::fail("a graph of other closures");
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,52 @@
+#include "semantic_mht_slam/slam/sessions.h"
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+namespace semantic_mht_slam {
+
+void Sessions::begin(KeyframeId next) {
+  sessions_.push_back({odometry_.size(), next, {}});
+}
+
+std::optional<StampedPose> Sessions::latestOdometry() const {
+  if (odometry_.size() == sessions_.back().first_odometry) return std::nullopt;
+  return odometry_.back();
+}
+
+const MapFix* Sessions::latestFix() const {
+  const std::vector<MapFix>& fixes = sessions_.back().fixes;
+  return fixes.empty() ? nullptr : &fixes.back();
+}
+
+TrajectoryRecord Sessions::record(const Map& map) const {
+  TrajectoryRecord record{odometry_, {}};
+  KeyframeId next(0);
+  for (auto session = sessions_.begin(); session != sessions_.end(); ++session) {
+    record.sessions.push_back({session->first_odometry, session->fixes});
+    const auto after = session + 1;
+    for (const KeyframeId end = after == sessions_.end() ? map.keyframes().nextId() : after->first_keyframe; next < end;
+         ++next) {
+      const Keyframe& keyframe = map.keyframes()[next];
+      record.sessions.back().fixes.push_back({keyframe.stamp, keyframe.T_odom_base, map.T_map_keyframe(next)});
+    }
+  }
+  return record;
+}
+
+void transfer(StateArchive& archive, MapFix& fix) {
+  auto& [stamp, T_odom_base, T_map_base] = fix;
+  archive(stamp, T_odom_base, T_map_base);
+}
+
+void Sessions::Session::transfer(StateArchive& archive) {
+  archive(first_odometry, first_keyframe, fixes);
+}
+
+void Sessions::transfer(StateArchive& archive) {
+  archive(odometry_, sessions_);
+  if (sessions_.empty() || sessions_.back().first_odometry > odometry_.size()) {
+    StateArchive::fail("sessions of no odometry");
+  }
+}
+
+}  // namespace semantic_mht_slam

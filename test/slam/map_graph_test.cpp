@@ -1,0 +1,71 @@
+#include "semantic_mht_slam/slam/map_graph.h"
+
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "support/square_drive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+class MapGraphTest : public testing::Test {
+ protected:
+  /// A submap of one keyframe that sees a landmark 1 m ahead.
+  GraphUpdate add(double x_m, LandmarkId landmark) {
+    auto submap = std::make_shared<Submap>();
+    submap->id = map_.submaps().nextId();
+    Keyframe keyframe;
+    keyframe.driven_m = x_m;
+    keyframe.T_odom_base.translation_m.x() = x_m;
+    const auto keyframes = map_.add(std::move(submap), {keyframe});
+    graph_.add(map_, keyframes, {{{landmark, 0, {1.0, 0.0, 0.0}, 1e-3 * Eigen::Matrix3d::Identity(), 1}}});
+    return optimize();
+  }
+
+  GraphUpdate optimize() {
+    map_.apply(graph_.review(map_));
+    const GraphUpdate update = graph_.optimize(map_.takeChanges());
+    map_.apply(update);
+    return update;
+  }
+
+  ClosureId close(std::size_t query, std::size_t match, const Pose& T_match_query,
+                  const std::vector<SameLandmark>& pairs) {
+    LoopClosureRecord closure;
+    closure.query_keyframe = KeyframeId(query);
+    closure.match_keyframe = KeyframeId(match);
+    closure.is_verified = true;
+    closure.T_match_query = T_match_query;
+    closure.cov = 1e-4 * PoseCov::Identity();
+    closure.pairs = pairs;
+    return map_.add(closure);
+  }
+
+  Map map_{0.5};
+  MapGraph graph_{BackEndConfig{}, OdometryNoise{}, makeStreetClasses()};
+};
+
+TEST_F(MapGraphTest, ASolutionThatFailsIsCountedAndSaid) {
+  EXPECT_EQ(add(0.0, 1).failure, "");
+  EXPECT_EQ(graph_.status().failures, 0U);
+  EXPECT_NE(add(1e200, 1).failure, "");  // sees the same landmark
+  EXPECT_EQ(graph_.status().failures, 1U);
+  EXPECT_FALSE(graph_.status().newest_failure.empty());
+}
+
+TEST_F(MapGraphTest, AClosureThatOdometryContradictsJoinsNothingAndOneThatFitsJoinsItsPairs) {
+  for (std::size_t i = 0; i < 8; ++i) add(10.0 * static_cast<double>(i), 1 + i);
+  const Pose far{Eigen::Quaterniond::Identity(), {30.0, 0.0, 0.0}};
+  const ClosureId wrong = close(7, 0, far, {{8, 1}});  // by odometry they are 70 m apart
+  const ClosureId right = close(7, 3, {Eigen::Quaterniond::Identity(), {40.0, 0.0, 0.0}}, {{8, 4}});
+  optimize();
+  EXPECT_FALSE(map_.closures()[wrong].is_accepted);
+  EXPECT_TRUE(map_.closures()[right].is_accepted) << map_.closures()[right].reason;
+  EXPECT_NE(*graph_.landmark(8), *graph_.landmark(1));
+  EXPECT_EQ(*graph_.landmark(8), *graph_.landmark(4));
+  EXPECT_EQ(map_.identity().landmarkOf(8), 4U);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
