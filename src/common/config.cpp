@@ -37,6 +37,15 @@ std::string groupOf(const std::string& key) {
   return dot == std::string::npos ? "" : key.substr(0, dot);
 }
 
+/// The only key of the same name in another group, where a key may have moved to.
+std::optional<std::string> namesake(const std::string& key, const std::vector<std::string>& keys) {
+  const auto nameOf = [](const std::string& dotted) { return dotted.substr(dotted.rfind('.') + 1); };
+  const auto isNamesake = [&](const std::string& other) { return nameOf(other) == nameOf(key); };
+  const auto found = std::find_if(keys.begin(), keys.end(), isNamesake);
+  if (found == keys.end() || std::any_of(found + 1, keys.end(), isNamesake)) return std::nullopt;
+  return *found;
+}
+
 }  // namespace
 
 void Fields::append(Field field) {
@@ -120,7 +129,8 @@ void applySettings(const std::vector<Setting>& settings, Fields& fields) {
   for (const Setting& setting : settings) {
     const auto found = std::find(keys.begin(), keys.end(), setting.key);
     if (found == keys.end()) {
-      const std::optional<std::string> guess = closest(setting.key, keys);
+      std::optional<std::string> guess = namesake(setting.key, keys);
+      if (!guess) guess = closest(setting.key, keys);
       problems.push_back(setting.origin + ": unknown key '" + setting.key + "'" +
                          (guess ? ", did you mean '" + *guess + "'?" : ""));
       continue;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "semantic_mht_slam/common/pose.h"
 #include "semantic_mht_slam/graph/pose2.h"
 
 namespace semantic_mht_slam {
@@ -20,12 +21,6 @@ struct RelativeError {
   Matrix by_from;
   Matrix by_to;
 };
-
-inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return matrix;
-}
 
 inline RelativeError<Eigen::Vector3d, Eigen::Matrix3d> relativeError(const double* from, const double* to,
                                                                      const Pose2& measured) {

@@ -18,7 +18,6 @@ void describe(MapAlignmentConfig& config, Fields& fields) {
   fields.add("accept_prob", config.accept_prob, "", {0.5, 0.999999},
              "Summed weight of the hypotheses that agree from which on an alignment is believed.");
   fields.add("min_matches", config.min_matches, "", {3, 1000}, "An alignment with fewer landmarks is not believed.");
-  fields.group("joint", config.joint);
 }
 
 }  // namespace semantic_mht_slam

@@ -28,8 +28,7 @@ class EarlierMapPlacement {
     const Gaussian3& seen = position(earlier);
     Eigen::Matrix3d cov = seen.cov_m2 + pointCov(offset_, seen.mean_m - offset_.mean.head<3>());
     cov.diagonal().array() += noise_floor_m2_;
-    const Eigen::Matrix3d turned = R_ * cov * R_.transpose();
-    return 0.5 * (turned + turned.transpose());
+    return symmetric(R_ * cov * R_.transpose());
   }
 
   Gaussian3 operator()(int earlier) const { return {mean_m(earlier), cov_m2(earlier)}; }

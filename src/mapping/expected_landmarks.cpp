@@ -24,7 +24,7 @@ bool isExpected(const MixtureLandmark& earlier, double average_observations) {
 }
 
 HypothesisLandmark expectedLandmark(const MixtureLandmark& earlier, int index, const Gaussian3& position,
-                                    double driven_m, const ClassTable& classes, const JointAlignmentConfig& config) {
+                                    double driven_m, const ClassTable& classes, const RegistrationConfig& config) {
   auto landmark = std::make_shared<TrackedLandmark>(trackedFrom(earlier));
   landmark->position = position;
   landmark->is_from_earlier_submap = true;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/mapping/hypothesis.h"
-#include "semantic_mht_slam/mapping/joint_alignment.h"
+#include "semantic_mht_slam/registration/registration.h"
 
 namespace semantic_mht_slam {
 
@@ -17,6 +17,6 @@ bool isExpected(const MixtureLandmark& earlier, double average_observations);
 
 /// An expected landmark: number `index` of the earlier map, at `position` (submap frame).
 HypothesisLandmark expectedLandmark(const MixtureLandmark& earlier, int index, const Gaussian3& position,
-                                    double driven_m, const ClassTable& classes, const JointAlignmentConfig& config);
+                                    double driven_m, const ClassTable& classes, const RegistrationConfig& config);
 
 }  // namespace semantic_mht_slam

@@ -15,8 +15,12 @@ constexpr double kHuberSigma = 2.0;
 
 }  // namespace
 
-MultiHypothesisTree::MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes)
-    : config_(config), model_(config, classes), tracking_(config, classes), branching_(config.alignment, classes) {
+MultiHypothesisTree::MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes,
+                                         const RegistrationConfig& registration)
+    : config_(config),
+      model_(config, classes),
+      tracking_(config, classes),
+      branching_(config.alignment, classes, registration) {
   restart({});
 }
 

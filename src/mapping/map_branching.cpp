@@ -23,11 +23,11 @@ constexpr double kHuberSigma = 2.0;
 constexpr double kMaxWithheld = 3.0;                 // nats of the evidence that the first look held back, at the end
 constexpr double kFinal_m = 0.5, kFinal_rad = 0.02;  // prior of the last refinement, around the hypothesis's offset
 
-PoseOffset offsetOf(const AlignmentHypothesis& mode) {
+PoseOffset offsetOf(const RegistrationMode& mode) {
   const Eigen::Matrix3d R = mode.T_a_b.rotation.toRotationMatrix();
   PoseOffset offset;
   offset.mean << mode.T_a_b.translation_m, std::atan2(R(1, 0), R(0, 0));
-  offset.cov = mode.cov;
+  offset.cov = mode.headingCov();
   return offset;
 }
 
@@ -38,8 +38,9 @@ double logExpectationEvidence(int found, double missed) {
   return std::lgamma(1.0 + found) + std::lgamma(1.0 + unseen) - std::lgamma(2.0 + found + unseen);
 }
 
-MapBranching::MapBranching(const MapAlignmentConfig& config, const ClassTable& classes)
-    : config_(config), classes_(classes) {}
+MapBranching::MapBranching(const MapAlignmentConfig& config, const ClassTable& classes,
+                           const RegistrationConfig& registration)
+    : config_(config), classes_(classes), registration_(registration) {}
 
 void MapBranching::restart(EarlierMap map) {
   map_ = std::move(map);
@@ -48,20 +49,21 @@ void MapBranching::restart(EarlierMap map) {
   next_attempt_m_ = config_.first_m;
 }
 
-std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const TrackedLandmark*>& landmarks,
-                                                     const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const {
+std::vector<RegistrationMode> MapBranching::modesOf(const std::vector<const TrackedLandmark*>& landmarks,
+                                                    const RegistrationPrior& prior,
+                                                    std::vector<LandmarkId>& ids) const {
   ids.clear();
   if (static_cast<int>(landmarks.size()) < config_.min_landmarks) return {};
-  std::vector<AlignmentPoint> points;
+  std::vector<RegistrationPoint> points;
   Eigen::AlignedBox3d box;
   for (const TrackedLandmark* landmark : landmarks) {
     points.push_back({landmark->position.mean_m, landmark->position.cov_m2, landmark->mostLikelyClass()});
     ids.push_back(landmark->id);
     box.extend(prior.T_a_b * landmark->position.mean_m);
   }
-  const double window_m = std::min(config_.joint.max_window_m, config_.joint.window_sigmas * prior.stddev_xy_m);
-  const double turn_m = config_.joint.window_sigmas * prior.stddev_yaw_rad * config_.radius_m;
-  std::vector<AlignmentPoint> earlier;
+  const double window_m = std::min(registration_.max_window_m, registration_.window_sigmas * prior.stddev_xy_m);
+  const double turn_m = registration_.window_sigmas * prior.stddev_yaw_rad * config_.radius_m;
+  std::vector<RegistrationPoint> earlier;
   earlier_of_point_.clear();
   for (std::size_t i = 0; i < map_.landmarks.size(); ++i) {
     const MixtureLandmark& landmark = map_.landmarks[i];
@@ -71,15 +73,13 @@ std::vector<AlignmentHypothesis> MapBranching::align(const std::vector<const Tra
     earlier.push_back({mean_m, landmark.position.cov_m2, landmark.mostLikelyClass()});
     earlier_of_point_.push_back(static_cast<int>(i));
   }
-  return alignJointly(points, earlier, prior, classes_, config_.joint);
+  return align(earlier, points, prior, classes_, registration_);
 }
 
-MapBranching::Matches MapBranching::matchesOf(const AlignmentHypothesis& mode,
-                                              const std::vector<LandmarkId>& ids) const {
+MapBranching::Matches MapBranching::matchesOf(const RegistrationMode& mode, const std::vector<LandmarkId>& ids) const {
   Matches matches;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const int point = mode.landmark_for_detection[i];
-    if (point >= 0) matches[ids[i]] = earlier_of_point_[static_cast<std::size_t>(point)];
+  for (const RegisteredPair& pair : mode.pairs) {
+    matches[ids[static_cast<std::size_t>(pair.b)]] = earlier_of_point_[static_cast<std::size_t>(pair.a)];
   }
   return matches;
 }
@@ -90,24 +90,24 @@ bool MapBranching::branch(const TreeInput& input, double log_min_weight, std::ui
   const bool is_decided = std::any_of(leaves.begin(), leaves.end(), [](const auto& leaf) { return leaf.map_offset; });
   if (is_decided) return false;
   next_attempt_m_ = input.driven_m + config_.retry_m;
-  const AlignmentPrior prior{Pose::identity(), map_.stddev_xy_m, map_.stddev_z_m, map_.stddev_yaw_rad};
+  const RegistrationPrior prior{Pose::identity(), map_.stddev_xy_m, map_.stddev_z_m, map_.stddev_yaw_rad};
   std::vector<LandmarkId> ids;
-  const auto modes = align(
+  const auto modes = modesOf(
       nearestLandmarks(leaves.front(), input.T_submap_base.translation_m, config_.radius_m, config_.max_landmarks),
       prior, ids);
   if (modes.empty()) return false;
-  const double gain = config_.log_prior_odds - std::max(0.0, modes.front().log_likelihood - config_.max_log_evidence);
+  const double gain = config_.log_prior_odds - std::max(0.0, modes.front().log_evidence - config_.max_log_evidence);
   std::vector<double> log_weights;
   for (const MapHypothesis& leaf : leaves) {
     log_weights.push_back(leaf.log_weight);
-    for (const AlignmentHypothesis& mode : modes) log_weights.push_back(leaf.log_weight + mode.log_likelihood + gain);
+    for (const RegistrationMode& mode : modes) log_weights.push_back(leaf.log_weight + mode.log_evidence + gain);
   }
   const double log_least = logSumExp(log_weights) + log_min_weight;
   const std::size_t parents = leaves.size();
-  for (const AlignmentHypothesis& mode : modes) {
+  for (const RegistrationMode& mode : modes) {
     const Matches matches = matchesOf(mode, ids);
     for (std::size_t p = 0; p < parents; ++p) {
-      const double log_weight = leaves[p].log_weight + mode.log_likelihood + gain;
+      const double log_weight = leaves[p].log_weight + mode.log_evidence + gain;
       if (log_weight < log_least) continue;
       leaves.push_back(aligned(leaves[p], offsetOf(mode), matches, input));
       MapHypothesis& child = leaves.back();
@@ -146,7 +146,7 @@ MapHypothesis MapBranching::aligned(const MapHypothesis& leaf, const PoseOffset&
     while (known != child.landmarks.end() && (*known)->id < earlier.id) landmarks.push_back(std::move(*known++));
     const bool is_known = known != child.landmarks.end() && (*known)->id == earlier.id;
     if (!is_known)
-      landmarks.push_back(expectedLandmark(earlier, i, placement(i), input.driven_m, classes_, config_.joint));
+      landmarks.push_back(expectedLandmark(earlier, i, placement(i), input.driven_m, classes_, registration_));
   }
   std::move(known, child.landmarks.end(), std::back_inserter(landmarks));
   child.landmarks = std::move(landmarks);
@@ -193,7 +193,7 @@ void MapBranching::matchTheRest(const MapHypothesis& leaf, const EarlierMapPlace
 }
 
 EarlierMapPlacement MapBranching::placementBy(const PoseOffset& offset) const {
-  return {map_.landmarks, offset, config_.joint.noise_floor_m};
+  return {map_.landmarks, offset, registration_.noise_floor_m};
 }
 
 void MapBranching::follow(const std::vector<std::pair<int, const Measurement*>>& seen, MapHypothesis& leaf) const {
@@ -207,7 +207,7 @@ void MapBranching::follow(const std::vector<std::pair<int, const Measurement*>>&
     observation.lever_m = R * measurement->position_m;
     observation.residual_m = earlier.mean_m - T_earlier_submap * measurement->position_m;
     observation.cov_m2 = earlier.cov_m2 + R * measurement->cov_m2 * R.transpose();
-    observation.cov_m2.diagonal().array() += config_.joint.noise_floor_m * config_.joint.noise_floor_m;
+    observation.cov_m2.diagonal().array() += registration_.noise_floor_m * registration_.noise_floor_m;
     observations.push_back(observation);
   }
   leaf.map_offset = updated(*leaf.map_offset, observations, kHuberSigma);
@@ -232,7 +232,7 @@ double MapBranching::agreeingWeight(const std::vector<MapHypothesis>& leaves, co
     }
     const Eigen::Vector4d d = leaf.map_offset->mean - offset.mean;
     const bool agrees =
-        d.head<2>().norm() < 2.0 * config_.joint.distinct_m && std::abs(d[3]) < 2.0 * config_.joint.distinct_rad;
+        d.head<2>().norm() < 2.0 * registration_.distinct_m && std::abs(d[3]) < 2.0 * registration_.distinct_rad;
     (agrees ? weight : others) += std::exp(leaf.log_weight);
   }
   return weight / (weight + others);
@@ -243,15 +243,15 @@ std::optional<MapAlignment> MapBranching::conclude(const std::vector<MapHypothes
   if (best == leaves.end()) return std::nullopt;
   MapAlignment alignment;
   alignment.T_earlier_submap = poseOf(*best->map_offset);
-  alignment.cov = best->map_offset->cov;
+  alignment.cov = stepCov(*best->map_offset, registration_.tilt_stddev_rad);
   alignment.weight = agreeingWeight(leaves, *best->map_offset, 0.0);
-  const AlignmentPrior prior{alignment.T_earlier_submap, kFinal_m, kFinal_m, kFinal_rad};
+  const RegistrationPrior prior{alignment.T_earlier_submap, kFinal_m, kFinal_m, kFinal_rad};
   std::vector<LandmarkId> ids;
-  const auto modes = align(mostSeenLandmarks(*best, 2 * config_.max_landmarks), prior, ids);
+  const auto modes = modesOf(mostSeenLandmarks(*best, 2 * config_.max_landmarks), prior, ids);
   if (modes.empty()) return alignment;
   const PoseOffset offset = offsetOf(modes.front());
   Matches matches = matchesOf(modes.front(), ids);
-  alignment.weight = agreeingWeight(leaves, *best->map_offset, modes.front().log_likelihood);
+  alignment.weight = agreeingWeight(leaves, *best->map_offset, modes.front().log_evidence);
   alignment.T_earlier_submap = modes.front().T_a_b;
   alignment.cov = modes.front().cov;
   alignment.matches = static_cast<int>(matches.size());

@@ -50,12 +50,12 @@ void useFirstNames(const std::vector<SameLandmark>& duplicates, std::vector<Dete
 
 }  // namespace
 
-Mapper::Mapper(const MapperConfig& config, const ClassTable& classes)
+Mapper::Mapper(const MapperConfig& config, const ClassTable& classes, const RegistrationConfig& registration)
     : config_(config),
       classes_(classes),
       calibration_(config.calibration, classes),
       bias_(config.bias, classes),
-      tree_(config, classes),
+      tree_(config, classes, registration),
       propagation_(config) {}
 
 Detections Mapper::calibrated(Detections detections) const {

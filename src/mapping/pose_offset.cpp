@@ -26,6 +26,18 @@ Pose corrected(const Pose& T_submap_base, const PoseOffset& offset) {
           T_submap_base.translation_m + offset.mean.head<3>()};
 }
 
+Eigen::Matrix<double, 6, 6> stepCov(const PoseOffset& offset, double tilt_stddev_rad) {
+  // The base is level, so that its z axis is the one that the heading turns about.
+  const Eigen::Matrix3d R_base_map = expRotation({0.0, 0.0, -offset.mean[3]}).toRotationMatrix();
+  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
+  J.topLeftCorner<3, 3>() = R_base_map;
+  J(5, 3) = 1.0;
+  Eigen::Matrix<double, 6, 6> cov = symmetric(J * offset.cov * J.transpose());
+  cov(3, 3) += tilt_stddev_rad * tilt_stddev_rad;
+  cov(4, 4) += tilt_stddev_rad * tilt_stddev_rad;
+  return cov;
+}
+
 Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_m) {
   // J cov J^T by the blocks of J = [I, turn]: this is done for every detection in every hypothesis.
   const Eigen::Vector3d turn(-lever_m.y(), lever_m.x(), 0.0);
@@ -59,7 +71,7 @@ PoseOffset updated(const PoseOffset& offset, const std::vector<OffsetObservation
   result.cov = information.inverse();
   const Eigen::Vector4d step = result.cov * vector;
   result.mean = offset.mean + step;
-  result.cov = 0.5 * (result.cov + result.cov.transpose()).eval();
+  result.cov = symmetric(result.cov);
   return result.mean.allFinite() && result.cov.allFinite() ? result : offset;
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
 
 namespace semantic_mht_slam {
 namespace {
@@ -23,6 +26,36 @@ void spread(double distance_m, double stddev_m, double weight, double bin_m, Eig
   for (int bin = first; bin <= last; ++bin) bins(bin) += weight * height(bin) / total;
 }
 
+/// An object seen from above.
+struct PlanarObject {
+  ClassIndex class_index = 0;
+  Eigen::Vector2d position_m;
+  double variance_m2 = 0.0;  ///< of each coordinate, mean of both
+
+  bool operator<(const PlanarObject& other) const {
+    return std::make_tuple(class_index, position_m.x(), position_m.y(), variance_m2) <
+           std::make_tuple(other.class_index, other.position_m.x(), other.position_m.y(), other.variance_m2);
+  }
+};
+
+/// In an order that depends on values alone, by class.
+std::vector<PlanarObject> planarObjects(const Scene& scene, const ClassTable& classes, double noise_floor_m) {
+  std::vector<PlanarObject> result;
+  for (const SceneObject& object : scene.objects) {
+    if (object.class_index < 0 || object.class_index >= classes.size()) {
+      throw std::invalid_argument("describePairs: an object has an unknown class");
+    }
+    const ClassInfo& info = classes[object.class_index];
+    double variance_m2 = noise_floor_m * noise_floor_m + 0.5 * (object.cov_m2(0, 0) + object.cov_m2(1, 1));
+    if (info.transition == Transition::kGaussian) {
+      variance_m2 += 0.5 * info.transition_stddev_m * info.transition_stddev_m;  // the other half is the other scene's
+    }
+    result.push_back({object.class_index, object.position_m.head<2>(), variance_m2});
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 }  // namespace
 
 void describe(PairDescriptorConfig& config, Fields& fields) {
@@ -32,14 +65,16 @@ void describe(PairDescriptorConfig& config, Fields& fields) {
              "What a pair counts for each end that may drive away.");
 }
 
-PairDescriptor describePairs(const PlanarScene& scene, const ClassTable& classes, const PairDescriptorConfig& config) {
+PairDescriptor describePairs(const Scene& scene, const ClassTable& classes, double noise_floor_m,
+                             const PairDescriptorConfig& config) {
+  const std::vector<PlanarObject> objects = planarObjects(scene, classes, noise_floor_m);
   const int bins = static_cast<int>(std::ceil(config.max_distance_m / config.bin_m));
   const int count = classes.size();
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count) * (count + 1) / 2 * bins);
-  for (int i = 0; i < scene.size(); ++i) {
-    for (int k = i + 1; k < scene.size(); ++k) {
-      const PlanarObject& a = scene.objects[i];
-      const PlanarObject& b = scene.objects[k];
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    for (std::size_t k = i + 1; k < objects.size(); ++k) {
+      const PlanarObject& a = objects[i];
+      const PlanarObject& b = objects[k];
       const double distance_m = (a.position_m - b.position_m).norm();
       if (distance_m >= config.max_distance_m) continue;
       const double weight = (classes[a.class_index].is_static ? 1.0 : config.movable_weight) *

@@ -4,6 +4,9 @@ namespace semantic_mht_slam {
 namespace {
 
 void describeChecks(PlaceConfig& config, Fields& fields) {
+  fields.add("full_residual", config.full_residual_m, "m", {0.01, 10.0},
+             "Objects nearer than this to their counterpart count fully as inliers.");
+  fields.add("movable_weight", config.movable_weight, "", {0.0, 1.0}, "What an object that may drive away counts.");
   fields.add("min_inliers", config.min_inliers, "", {2, 1000}, "Least number of objects that lie on each other.");
   fields.add("min_classes", config.min_classes, "", {1, 32}, "Least number of classes among them.");
   fields.add("min_spread", config.min_spread_m, "m", {0.0, 100.0},
@@ -21,8 +24,10 @@ void describeChecks(PlaceConfig& config, Fields& fields) {
              "How much more `lone_score` is at the edge of the drift gate, and without a gate.");
   fields.add("rival_ratio", config.rival_ratio, "", {0.0, 1.0},
              "A match is refused if another alignment or place has this part of its score.");
-  fields.add("agree_distance", config.agree_m, "m", {0.01, 100.0},
-             "Matches of neighbouring keyframes agree if they differ by less than this and 2 % of the way between.");
+  fields.add(
+      "agree_distance", config.agree_m, "m", {0.01, 100.0},
+      "Matches of neighbouring keyframes agree if they differ by less than this and 2 % of the way between; so do two "
+      "alignments of one pair of keyframes that are no rivals.");
   fields.add("agree_angle", config.agree_rad, "rad", {0.001, 3.2}, "The same of their headings.");
   fields.add("support_reach", config.support_reach_m, "m", {0.0, 10000.0},
              "Keyframes this far apart, by distance driven, are neighbours.");
@@ -49,7 +54,6 @@ void describe(PlaceConfig& config, Fields& fields) {
   describeChecks(config, fields);
   fields.group("descriptor", config.descriptor);
   fields.group("paper", config.paper);
-  fields.group("alignment", config.alignment);
 }
 
 }  // namespace semantic_mht_slam

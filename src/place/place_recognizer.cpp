@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "alignment_check.h"
+#include "semantic_mht_slam/place/scene_alignment.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -35,17 +35,16 @@ PaperChainConfig paperConfig(const PlaceConfig& config) {
 
 }  // namespace
 
-PlaceRecognizer::PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes)
-    : config_(config), classes_(classes) {
+PlaceRecognizer::PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes,
+                                 const RegistrationConfig& registration)
+    : config_(config), classes_(classes), registration_(registration) {
   if (config.chain == PlaceChain::kPaper) paper_.emplace(paperConfig(config), classes.size());
 }
 
 PlaceRecognizer::Place PlaceRecognizer::makePlace(Keyframe keyframe) const {
   Place place;
-  place.scene = makePlanarScene(keyframe.scene, classes_, config_.alignment.noise_floor_m);
-  place.descriptor = describePairs(place.scene, classes_, config_.descriptor);
+  place.descriptor = describePairs(keyframe.scene, classes_, registration_.noise_floor_m, config_.descriptor);
   place.keyframe = std::move(keyframe);
-  place.keyframe.scene = {};
   return place;
 }
 
@@ -136,27 +135,26 @@ std::vector<PlaceMatch> PlaceRecognizer::comparePaper(const Keyframe& query, std
 }
 
 PlaceMatch PlaceRecognizer::verify(const Place& query, std::size_t index) const {
-  const Place& place = places_[index];
+  const Scene& of_query = query.keyframe.scene;
+  const Scene& of_match = places_[index].keyframe.scene;
   PlaceMatch match;
-  const std::vector<SceneAlignment> alignments = alignScenes(query.scene, place.scene, classes_, config_.alignment);
+  const std::vector<SceneAlignment> alignments = alignScenes(of_query, of_match, classes_, registration_, config_);
   if (alignments.empty()) {
     match.refusal = PlaceRefusal::kNoAlignment;
     return match;
   }
   const SceneAlignment& best = alignments.front();
-  match.T_match_query = best.T_match_query;
-  match.cov = best.cov;
-  match.inliers = static_cast<int>(best.pairs.size());
+  match.T_match_query = best.mode.T_a_b;
+  match.cov = best.mode.cov;
+  match.inliers = static_cast<int>(best.mode.pairs.size());
   match.static_inliers = best.static_inliers;
   match.verification_score = best.similarity;
   match.scene_score = best.soft_inliers > 0.0 ? std::min(1.0, best.similarity / best.soft_inliers) : 0.0;
-  match.log_evidence = best.log_evidence;
-  if (alignments.size() > 1) match.rival_score = alignments[1].similarity;
-  std::vector<LandmarkId> of_query(query.scene.objects.size());
-  std::vector<LandmarkId> of_match(place.scene.objects.size());
-  for (const PlanarObject& object : query.scene.objects) of_query[object.index] = object.landmark;
-  for (const PlanarObject& object : place.scene.objects) of_match[object.index] = object.landmark;
-  for (const AlignedPair& pair : best.pairs) match.pairs.emplace_back(of_query[pair.query], of_match[pair.match]);
+  match.log_evidence = best.mode.log_evidence;
+  match.rival_score = rivalSimilarity(alignments, config_);
+  for (const RegisteredPair& pair : best.mode.pairs) {
+    match.pairs.emplace_back(of_query.objects[pair.b].landmark, of_match.objects[pair.a].landmark);
+  }
   match.refusal = checkAlignment(best, match.rival_score, config_);
   return match;
 }

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "semantic_mht_slam/common/gaussian.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -71,7 +73,7 @@ Scene accumulateScene(const std::vector<Detections>& frames, const std::vector<P
     for (SceneObject seen : sceneOfFrame(frames[i], classes).objects) {
       seen.position_m = T_base_frame[i] * seen.position_m;
       seen.cov_m2 = rotation * seen.cov_m2 * rotation.transpose();
-      seen.cov_m2 = (0.5 * (seen.cov_m2 + seen.cov_m2.transpose())).eval();
+      seen.cov_m2 = symmetric(seen.cov_m2);
       Cluster* cluster = nearestCluster(clusters, seen);
       if (cluster == nullptr) cluster = &clusters.emplace_back(Cluster{seen, 0});
       cluster->add(seen);

@@ -2,109 +2,103 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
-#include "scene_correspondences.h"
-#include "scene_fit.h"
-#include "scene_pose.h"
-#include "scene_votes.h"
+#include <Eigen/Eigenvalues>
 
 namespace semantic_mht_slam {
 namespace {
 
-constexpr std::size_t kMaxJudged = 4;
-constexpr std::size_t kMaxReturned = 2;
-
-bool areDistinct(const PlanarFit& a, const PlanarFit& b, const SceneAlignmentConfig& config) {
-  return (a.motion.shift_m - b.motion.shift_m).norm() > config.distinct_m ||
-         std::cos(a.motion.yaw_rad - b.motion.yaw_rad) < std::cos(config.distinct_rad);
-}
-
-std::vector<PlanarGuess> guessMotions(const PlanarScene& query, const PlanarScene& match,
-                                      const SceneAlignmentConfig& config) {
-  switch (config.search) {
-    case AlignmentSearch::kClique:
-      return guessByCliques(query, match);
-    case AlignmentSearch::kRansac:
-      return guessByRansac(query, match);
-    case AlignmentSearch::kVotes:
-      break;
+double spreadAcross(const Scene& query, const std::vector<RegisteredPair>& pairs) {
+  if (pairs.size() < 2) return 0.0;
+  const double count = static_cast<double>(pairs.size());
+  Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
+  for (const RegisteredPair& pair : pairs) mean_m += query.objects[pair.b].position_m.head<2>() / count;
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const RegisteredPair& pair : pairs) {
+    const Eigen::Vector2d from_mean_m = query.objects[pair.b].position_m.head<2>() - mean_m;
+    scatter += from_mean_m * from_mean_m.transpose() / count;
   }
-  return voteForMotions(query, match, config.max_offset_m, config.max_guesses);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(scatter, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
 }
 
-bool isWithinReach(const PlanarScene& query, const PlanarScene& match, const PlanarFit& fit, double max_offset_m) {
-  return moved(fit.motion, query, match, Eigen::Vector2d::Zero()).norm() <= max_offset_m;
+/// What the objects of a scene count in all.
+double countOf(const Scene& scene, const ClassTable& classes, double movable_weight) {
+  int movable = 0;
+  for (const SceneObject& object : scene.objects) movable += classes[object.class_index].is_static ? 0 : 1;
+  return static_cast<double>(scene.objects.size()) - (1.0 - movable_weight) * movable;
 }
 
-/// Refined guesses, the most promising first.
-std::vector<PlanarFit> refinedGuesses(const PlanarScene& query, const PlanarScene& match,
-                                      const std::vector<bool>& is_static, const SceneAlignmentConfig& config) {
-  std::vector<PlanarFit> fits;
-  for (const PlanarGuess& guess : guessMotions(query, match, config)) {
-    PlanarFit fit = refineMotion(query, match, guess, is_static, config);
-    if (isWithinReach(query, match, fit, config.max_offset_m)) fits.push_back(std::move(fit));
+SceneAlignment scored(RegistrationMode mode, const Scene& query, const Scene& match, const ClassTable& classes,
+                      const PlaceConfig& config) {
+  SceneAlignment result;
+  std::set<ClassIndex> pair_classes;
+  for (const RegisteredPair& pair : mode.pairs) {
+    const SceneObject& object = query.objects[pair.b];
+    const Eigen::Vector3d apart_m = mode.T_a_b * object.position_m - match.objects[pair.a].position_m;
+    const double beyond = std::max(0.0, apart_m.head<2>().norm() / config.full_residual_m - 1.0);
+    const double weight = std::exp(-0.5 * beyond * beyond);
+    const bool is_static = classes[object.class_index].is_static;
+    result.soft_inliers += (is_static ? 1.0 : config.movable_weight) * weight;
+    if (is_static) result.static_inliers += weight;
+    pair_classes.insert(object.class_index);
   }
-  std::stable_sort(fits.begin(), fits.end(),
-                   [](const PlanarFit& a, const PlanarFit& b) { return a.quick_score > b.quick_score; });
-  return fits;
+  const double smaller =
+      std::min(countOf(query, classes, config.movable_weight), countOf(match, classes, config.movable_weight));
+  if (smaller > 0.0) result.similarity = result.soft_inliers * result.soft_inliers / smaller;
+  result.spread_m = spreadAcross(query, mode.pairs);
+  result.pair_classes = static_cast<int>(pair_classes.size());
+  result.mode = std::move(mode);
+  return result;
 }
 
-/// The best distinct fits, judged.
-std::vector<PlanarFit> judgedFits(const PlanarScene& query, const PlanarScene& match, const ClassTable& classes,
-                                  const SceneAlignmentConfig& config) {
-  std::vector<bool> is_static;
-  for (const ClassInfo& info : classes.all()) is_static.push_back(info.is_static);
-  std::vector<PlanarFit> judged;
-  for (PlanarFit& fit : refinedGuesses(query, match, is_static, config)) {
-    const bool is_new = std::all_of(judged.begin(), judged.end(),
-                                    [&](const PlanarFit& other) { return areDistinct(fit, other, config); });
-    if (!is_new) continue;
-    judgeFit(query, match, is_static, config, fit);
-    judged.push_back(std::move(fit));
-    if (judged.size() == kMaxJudged) break;
-  }
-  std::stable_sort(judged.begin(), judged.end(),
-                   [](const PlanarFit& a, const PlanarFit& b) { return a.similarity > b.similarity; });
-  return judged;
+double largestHorizontalStddev(const Eigen::Matrix<double, 6, 6>& cov) {
+  const Eigen::Matrix2d horizontal = cov.topLeftCorner<2, 2>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(horizontal, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()(1)));
 }
 
 }  // namespace
 
-void describe(SceneAlignmentConfig& config, Fields& fields) {
-  using Search = AlignmentSearch;
-  fields.add("search", config.search,
-             {{"votes", Search::kVotes}, {"clique", Search::kClique}, {"ransac", Search::kRansac}},
-             "First guesses: votes of object pairs, maximum clique of correspondences, or random samples (PCL).");
-  fields.add("max_offset", config.max_offset_m, "m", {0.1, 60.0},
-             "Two keyframes further apart than this are not compared as one place.");
-  fields.add("max_guesses", config.max_guesses, "", {1, 1000}, "Guesses of `votes` that are refined.");
-  fields.add("noise_floor", config.noise_floor_m, "m", {0.001, 10.0},
-             "Deviation of a centroid between two passes on top of its covariance.");
-  fields.add("full_residual", config.full_residual_m, "m", {0.01, 10.0},
-             "Objects nearer than this to their counterpart count fully as inliers.");
-  fields.add("static_match_prob", config.static_match_prob, "", {0.01, 0.99},
-             "Probability that a static object of a place is seen again.");
-  fields.add("movable_match_prob", config.movable_match_prob, "", {0.01, 0.99},
-             "The same of an object that may drive away.");
-  fields.add("movable_weight", config.movable_weight, "", {0.0, 1.0}, "What an object that may drive away counts.");
-  fields.add("density_floor", config.density_floor_per_m2, "1/m^2", {1e-6, 10.0},
-             "Least density of the objects of a class, for the evidence of a match.");
-  fields.add("distinct_distance", config.distinct_m, "m", {0.01, 100.0}, "Alignments further apart are two.");
-  fields.add("distinct_angle", config.distinct_rad, "rad", {0.001, 3.0}, "Alignments turned further are two.");
-  fields.add("tilt_stddev", config.tilt_stddev_rad, "rad", {1e-4, 1.0},
-             "Roll and pitch between two keyframes of a place.");
-  fields.add("height_stddev", config.height_stddev_m, "m", {1e-3, 100.0},
-             "Deviation of a centroid's height between two passes on top of its covariance.");
+std::vector<SceneAlignment> alignScenes(const Scene& query, const Scene& match, const ClassTable& classes,
+                                        const RegistrationConfig& registration, const PlaceConfig& config) {
+  std::vector<SceneAlignment> result;
+  for (RegistrationMode& mode :
+       align(registrationPoints(match), registrationPoints(query), std::nullopt, classes, registration)) {
+    result.push_back(scored(std::move(mode), query, match, classes, config));
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const SceneAlignment& a, const SceneAlignment& b) { return a.similarity > b.similarity; });
+  return result;
 }
 
-std::vector<SceneAlignment> alignScenes(const PlanarScene& query, const PlanarScene& match, const ClassTable& classes,
-                                        const SceneAlignmentConfig& config) {
-  std::vector<SceneAlignment> result;
-  for (const PlanarFit& fit : judgedFits(query, match, classes, config)) {
-    if (fit.pairs.empty() || result.size() == kMaxReturned) break;
-    result.push_back(toAlignment(query, match, fit, config));
+double rivalSimilarity(const std::vector<SceneAlignment>& alignments, const PlaceConfig& config) {
+  for (const SceneAlignment& other : alignments) {
+    const Pose step = alignments.front().mode.T_a_b.inverse() * other.mode.T_a_b;
+    const bool is_same =
+        step.translation_m.head<2>().norm() < config.agree_m && logRotation(step.rotation).norm() < config.agree_rad;
+    if (!is_same) return other.similarity;
   }
-  return result;
+  return -1.0;
+}
+
+PlaceRefusal checkAlignment(const SceneAlignment& alignment, double rival_score, const PlaceConfig& config) {
+  if (static_cast<int>(alignment.mode.pairs.size()) < config.min_inliers) return PlaceRefusal::kFewInliers;
+  if (alignment.pair_classes < config.min_classes) return PlaceRefusal::kFewClasses;
+  if (alignment.spread_m < config.min_spread_m) return PlaceRefusal::kOnALine;
+  if (largestHorizontalStddev(alignment.mode.cov) > config.max_stddev_m ||
+      std::sqrt(alignment.mode.cov(5, 5)) > config.max_stddev_rad) {
+    return PlaceRefusal::kUncertain;
+  }
+  if (alignment.similarity < config.supported_score ||
+      alignment.similarity < config.min_share * alignment.soft_inliers ||
+      alignment.mode.log_evidence < config.min_log_evidence) {
+    return PlaceRefusal::kLowScore;
+  }
+  if (rival_score > config.rival_ratio * alignment.similarity) return PlaceRefusal::kAmbiguous;
+  return PlaceRefusal::kNone;
 }
 
 }  // namespace semantic_mht_slam

@@ -147,8 +147,8 @@ TrueLandmarks readTrueLandmarks(const std::string& path, const Dataset& dataset)
   return truth;
 }
 
-JointAlignmentConfig readConfig(const std::vector<std::string>& texts) {
-  JointAlignmentConfig config;
+RegistrationConfig readConfig(const std::vector<std::string>& texts) {
+  RegistrationConfig config;
   Fields fields;
   describe(config, fields);
   std::vector<Setting> settings;
@@ -194,7 +194,7 @@ int evaluateAlignment(const std::vector<std::string>& arguments) {
   Options options;
   if (!parseOrHelp(arguments, kUsage, describe(options))) return 0;
   if (options.frames_step == 0) throw InputError("--frames-step must be positive");
-  const JointAlignmentConfig config = readConfig(options.settings);
+  const RegistrationConfig config = readConfig(options.settings);
   const ClassTable classes = readClassTable(options.classes_path);
   const Dataset dataset = readDataset({options.dataset_path, options.objects, "poses.txt"}, classes);
   if (!dataset.T_map_base) throw InputError(options.dataset_path + ": no poses.txt, which this needs");

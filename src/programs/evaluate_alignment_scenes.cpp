@@ -84,7 +84,7 @@ std::vector<Cluster> buildMap(const Dataset& dataset, const ClassTable& classes,
   return clusters;
 }
 
-AlignmentPoint landmark(const Cluster& cluster, const ClassInfo& info) {
+RegistrationPoint landmark(const Cluster& cluster, const ClassInfo& info) {
   const double variance_m2 = info.range_stddev_m * info.range_stddev_m / kMinSightings;
   return {cluster.position_m(), variance_m2 * Eigen::Matrix3d::Identity(), cluster.class_index};
 }
@@ -116,7 +116,7 @@ std::pair<std::size_t, std::size_t> frameRange(const std::vector<Pose>& poses, s
 /// For each detection the landmark that is its nearest of the class and has it as its nearest, or -1.
 std::vector<int> mutualNearest(const AlignmentScene& scene, const Pose& T_map_base,
                                const std::vector<double>& radii_m) {
-  const auto nearest = [&](const std::vector<Eigen::Vector3d>& targets_m, const std::vector<AlignmentPoint>& points,
+  const auto nearest = [&](const std::vector<Eigen::Vector3d>& targets_m, const std::vector<RegistrationPoint>& points,
                            const Eigen::Vector3d& position_m, ClassIndex class_index) {
     int result = -1;
     double nearest_m = radii_m[class_index];
@@ -130,8 +130,8 @@ std::vector<int> mutualNearest(const AlignmentScene& scene, const Pose& T_map_ba
     return result;
   };
   std::vector<Eigen::Vector3d> detections_m, landmarks_m;
-  for (const AlignmentPoint& point : scene.detections) detections_m.push_back(T_map_base * point.position_m);
-  for (const AlignmentPoint& point : scene.landmarks) landmarks_m.push_back(point.position_m);
+  for (const RegistrationPoint& point : scene.detections) detections_m.push_back(T_map_base * point.position_m);
+  for (const RegistrationPoint& point : scene.landmarks) landmarks_m.push_back(point.position_m);
   std::vector<int> result;
   for (std::size_t i = 0; i < detections_m.size(); ++i) {
     const ClassIndex c = scene.detections[i].class_index;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/io/dataset.h"
-#include "semantic_mht_slam/mapping/joint_alignment.h"
+#include "semantic_mht_slam/registration/registration.h"
 
 namespace semantic_mht_slam {
 
@@ -14,8 +14,8 @@ using TrueLandmarks = std::vector<std::vector<int>>;
 /// One frame of a later pass and the map that an earlier pass made of the same place.
 struct AlignmentScene {
   std::size_t frame = 0;
-  std::vector<AlignmentPoint> detections;       ///< base frame
-  std::vector<AlignmentPoint> landmarks;        ///< map frame
+  std::vector<RegistrationPoint> detections;    ///< base frame
+  std::vector<RegistrationPoint> landmarks;     ///< map frame
   std::vector<std::vector<int>> right_matches;  ///< of each detection; empty: it has no counterpart and is not scored
   Pose T_map_base;                              ///< the truth, registered where poses are not exact
 };

@@ -39,7 +39,7 @@ Pose displaced(const Pose& T_map_base, const Displacement& offset, Rng rng) {
 
 std::vector<int> nearestNeighbour(const AlignmentScene& scene, const Pose& T_map_base) {
   std::vector<int> result;
-  for (const AlignmentPoint& detection : scene.detections) {
+  for (const RegistrationPoint& detection : scene.detections) {
     const Eigen::Vector3d position_m = T_map_base * detection.position_m;
     double nearest_m = kMaxDistance_m;
     result.push_back(-1);
@@ -72,10 +72,11 @@ std::vector<int> hungarian(const AlignmentScene& scene, const Pose& T_map_base) 
   return result;
 }
 
-std::vector<AlignmentHypothesis> hypotheses(const std::vector<AlignmentPoint>& detections,
-                                            const std::vector<AlignmentPoint>& landmarks, const Pose& T_map_base,
-                                            const ClassTable& classes, const JointAlignmentConfig& config) {
-  return alignJointly(detections, landmarks, {T_map_base, kPriorXy_m, kPriorZ_m, kPriorYaw_rad}, classes, config);
+std::vector<RegistrationMode> hypotheses(const std::vector<RegistrationPoint>& detections,
+                                         const std::vector<RegistrationPoint>& landmarks, const Pose& T_map_base,
+                                         const ClassTable& classes, const RegistrationConfig& config) {
+  return align(landmarks, detections, RegistrationPrior{T_map_base, kPriorXy_m, kPriorZ_m, kPriorYaw_rad}, classes,
+               config);
 }
 
 /// Error in x, y and heading.
@@ -84,29 +85,29 @@ Eigen::Vector3d planarError(const Pose& estimate, const Pose& truth) {
           logRotation(estimate.rotation * truth.rotation.conjugate()).z()};
 }
 
-bool isRight(const AlignmentHypothesis& hypothesis, const Pose& T_map_base) {
+bool isRight(const RegistrationMode& hypothesis, const Pose& T_map_base) {
   const Eigen::Vector3d error = planarError(hypothesis.T_a_b, T_map_base);
   return error.head<2>().norm() < kRight_m && std::abs(error.z()) < kRight_rad;
 }
 
-double squaredError(const AlignmentHypothesis& hypothesis, const Pose& T_map_base) {
+double squaredError(const RegistrationMode& hypothesis, const Pose& T_map_base) {
   Eigen::Matrix<double, 3, 4> planar = Eigen::Matrix<double, 3, 4>::Zero();
   planar(0, 0) = planar(1, 1) = planar(2, 3) = 1.0;
-  const Eigen::Matrix3d cov = planar * hypothesis.cov * planar.transpose();
+  const Eigen::Matrix3d cov = planar * hypothesis.headingCov() * planar.transpose();
   const Eigen::Vector3d error = planarError(hypothesis.T_a_b, T_map_base);
   return error.dot(cov.inverse() * error);
 }
 
 /// Matches of the likeliest hypothesis, and what there is to say of all of them; sums until all frames are done.
 std::vector<int> jointAlignment(const AlignmentScene& scene, const Pose& T_map_base, const ClassTable& classes,
-                                const JointAlignmentConfig& config, AlignmentResult& result) {
+                                const RegistrationConfig& config, AlignmentResult& result) {
   const Stopwatch watch;
-  const std::vector<AlignmentHypothesis> found =
+  const std::vector<RegistrationMode> found =
       hypotheses(scene.detections, scene.landmarks, T_map_base, classes, config);
   result.milliseconds.push_back(watch.elapsed_ms());
   ++result.frames;
   result.hypotheses += static_cast<double>(found.size());
-  result.any_right += std::any_of(found.begin(), found.end(), [&](const AlignmentHypothesis& hypothesis) {
+  result.any_right += std::any_of(found.begin(), found.end(), [&](const RegistrationMode& hypothesis) {
     return isRight(hypothesis, scene.T_map_base);
   });
   if (found.empty()) {
@@ -117,7 +118,11 @@ std::vector<int> jointAlignment(const AlignmentScene& scene, const Pose& T_map_b
     ++result.best_right;
     result.nees += squaredError(found.front(), scene.T_map_base);
   }
-  return found.front().landmark_for_detection;
+  std::vector<int> landmark_for_detection(scene.detections.size(), -1);
+  for (const RegisteredPair& pair : found.front().pairs) {
+    landmark_for_detection[static_cast<std::size_t>(pair.b)] = pair.a;
+  }
+  return landmark_for_detection;
 }
 
 void score(const AlignmentScene& scene, const std::vector<int>& matches, MatchTally& tally) {
@@ -139,7 +144,7 @@ void score(const AlignmentScene& scene, const std::vector<int>& matches, MatchTa
 
 /// Each frame on the maps of some others that are far away.
 ElsewhereResult layElsewhere(const std::vector<AlignmentScene>& scenes, const ClassTable& classes,
-                             const JointAlignmentConfig& config) {
+                             const RegistrationConfig& config) {
   ElsewhereResult result;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     for (std::size_t part = 1; part < 6; ++part) {
@@ -150,7 +155,7 @@ ElsewhereResult layElsewhere(const std::vector<AlignmentScene>& scenes, const Cl
       ++result.frames;
       result.believed += !found.empty();
       if (!found.empty()) {
-        result.max_log_likelihood = std::max(result.max_log_likelihood, found.front().log_likelihood);
+        result.max_log_likelihood = std::max(result.max_log_likelihood, found.front().log_evidence);
       }
     }
   }
@@ -164,7 +169,7 @@ double MatchTally::share() const {
 }
 
 AlignmentTrials runAlignmentTrials(const std::vector<AlignmentScene>& scenes, const ClassTable& classes,
-                                   const JointAlignmentConfig& config, const Rng& rng) {
+                                   const RegistrationConfig& config, const Rng& rng) {
   AlignmentTrials trials;
   std::vector<MethodResult> nearest_results, hungarian_results, joint_results;
   for (const Displacement& offset : displacements()) {

@@ -63,6 +63,6 @@ struct AlignmentTrials {
 };
 
 AlignmentTrials runAlignmentTrials(const std::vector<AlignmentScene>& scenes, const ClassTable& classes,
-                                   const JointAlignmentConfig& config, const Rng& rng);
+                                   const RegistrationConfig& config, const Rng& rng);
 
 }  // namespace semantic_mht_slam

@@ -144,11 +144,11 @@ std::function<const Prepared&(std::size_t)> memoized(std::function<Prepared(std:
   };
 }
 
-ScoreOfPair alignmentScore(const Scenes& scenes, const ClassTable& classes, const SceneAlignmentConfig& config) {
-  const auto prepared = memoized<PlanarScene>(
-      [&](std::size_t frame) { return makePlanarScene(scenes.at(frame), classes, config.noise_floor_m); });
+ScoreOfPair alignmentScore(const Scenes& scenes, const ClassTable& classes, const SlamConfig& config) {
+  const auto prepared = memoized<Scene>([&](std::size_t frame) { return scenes.at(frame); });
   return [&, prepared](std::size_t i, std::size_t j) {
-    const std::vector<SceneAlignment> found = alignScenes(prepared(i), prepared(j), classes, config);
+    const std::vector<SceneAlignment> found =
+        alignScenes(prepared(i), prepared(j), classes, config.registration, config.back_end.place);
     return found.empty() ? 0.0 : found.front().similarity;
   };
 }
@@ -194,7 +194,7 @@ int run(const Arguments& arguments) {
                       std::move(T_odom_base), arguments.window, classes);
   const PlaceConfig& place = config.slam.back_end.place;
   const ScoreOfPair score = arguments.chain == "paper" ? paperScore(scenes, classes, place.paper)
-                                                       : alignmentScore(scenes, classes, place.alignment);
+                                                       : alignmentScore(scenes, classes, config.slam);
   std::string text = "i,j,score\n";
   for (const auto& [i, j] : pairs) {
     text += std::to_string(i) + "," + std::to_string(j) + "," + formatDouble(score(i, j)) + "\n";

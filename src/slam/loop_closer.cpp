@@ -8,17 +8,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-/// Covariance of a step on the right of T_a_b from that of the position and heading of b in the axes of a.
-PoseCov stepCov(const Eigen::Matrix4d& cov, const Pose& T_a_b, double tilt_stddev_rad) {
-  const Eigen::Matrix3d R_b_a = T_a_b.rotation.toRotationMatrix().transpose();
-  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
-  J.topLeftCorner<3, 3>() = R_b_a;
-  J.block<3, 1>(3, 3) = R_b_a.col(2);
-  PoseCov result = J * cov * J.transpose();
-  result.diagonal().tail<3>().array() += tilt_stddev_rad * tilt_stddev_rad;
-  return 0.5 * (result + result.transpose());
-}
-
 LoopClosureRecord toRecord(PlaceMatch match, const std::vector<KeyframeId>& keyframe_of_place) {
   LoopClosureRecord record;
   record.source = ClosureSource::kPlace;
@@ -44,11 +33,12 @@ void transfer(StateArchive& archive, SubmapPrediction& prediction) {
   archive(T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad, T_map_keyframe);
 }
 
-LoopCloser::LoopCloser(const BackEndConfig& config, const ClassTable& classes)
+LoopCloser::LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration)
     : config_(config),
       classes_(classes),
+      registration_(registration),
       evaluator_(makeSubmapEvaluator(config.evaluator, config.evaluator.tree, classes.size())),
-      places_(config.place, classes) {}
+      places_(config.place, classes, registration) {}
 
 std::vector<ClosureSource> LoopCloser::sources() const {
   if (!config_.close_loops) return {};
@@ -122,7 +112,7 @@ std::vector<LoopClosureRecord> LoopCloser::closeByHypotheses(const Map& map, con
   record.score = alignment.weight;
   record.inliers = alignment.matches;
   record.T_match_query = T_map_keyframe[nearest].inverse() * T_map_submap;
-  record.cov = stepCov(alignment.cov, alignment.T_earlier_submap, config_.revisit.alignment.tilt_stddev_rad);
+  record.cov = alignment.cov;
   record.pairs = alignment.pairs;
   return {std::move(record)};
 }
@@ -133,7 +123,7 @@ std::vector<LoopClosureRecord> LoopCloser::revisits(const Map& map, const Closur
   for (const KeyframeId keyframe : query.keyframes) {
     if (!isSearched(keyframe)) continue;
     const double drifted_m = std::max(0.0, map.keyframes()[keyframe].driven_m - tied_at_m);
-    for (auto& record : findRevisits(map, keyframe, drifted_m, classes_, config_.revisit)) {
+    for (auto& record : findRevisits(map, keyframe, drifted_m, classes_, registration_, config_.revisit)) {
       found.push_back(std::move(record));
     }
   }
@@ -152,9 +142,9 @@ std::optional<Pose> LoopCloser::locate(const Map& map, const Scene& scene) const
 
 std::optional<Pose> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base,
                                          double drifted_m) const {
-  const AlignmentPrior prior = driftPrior(T_map_base, drifted_m, config_.revisit);
+  const RegistrationPrior prior = driftPrior(T_map_base, drifted_m, config_.revisit);
   const LoopClosureRecord* best = nullptr;
-  const std::vector<LoopClosureRecord> records = findInMap(map, scene, prior, classes_, config_.revisit);
+  const std::vector<LoopClosureRecord> records = findInMap(map, scene, prior, classes_, registration_, config_.revisit);
   for (const LoopClosureRecord& record : records) {
     if (record.is_verified && (best == nullptr || record.score > best->score)) best = &record;
   }

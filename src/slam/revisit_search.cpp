@@ -5,24 +5,22 @@
 #include <map>
 #include <optional>
 
-#include "pose_refinement.h"
+#include "semantic_mht_slam/common/gaussian.h"
 
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kHuberSigma = 2.0;
 constexpr double kSamePlace_m = 10.0;
 
 /// Mean of what several keyframes say of a landmark.
 struct EarlierLandmark {
-  AlignmentPoint point;
+  RegistrationPoint point;
   int sightings = 0;
 };
 
-AlignmentPoint moved(const Pose& T_a_b, const SceneObject& object) {
+RegistrationPoint moved(const Pose& T_a_b, const SceneObject& object) {
   const Eigen::Matrix3d R = T_a_b.rotation.toRotationMatrix();
-  const Eigen::Matrix3d cov = R * object.cov_m2 * R.transpose();
-  return {T_a_b * object.position_m, 0.5 * (cov + cov.transpose()), object.class_index};
+  return {T_a_b * object.position_m, symmetric(R * object.cov_m2 * R.transpose()), object.class_index};
 }
 
 /// What one earlier drive past a place saw there. Each pass has only its own, local odometry error in it, whatever the
@@ -30,7 +28,7 @@ AlignmentPoint moved(const Pose& T_a_b, const SceneObject& object) {
 struct Pass {
   std::vector<KeyframeId> keyframes;
   std::vector<LandmarkId> ids;
-  std::vector<AlignmentPoint> points;
+  std::vector<RegistrationPoint> points;
 };
 
 /// Runs of successive keyframes among the first `end` that are near a position.
@@ -50,7 +48,7 @@ std::vector<std::vector<KeyframeId>> runsWithin(double radius_m, const Eigen::Ve
 }
 
 /// The same near the pose that is expected.
-std::vector<std::vector<KeyframeId>> runsNear(const Map& map, KeyframeId end, const AlignmentPrior& prior,
+std::vector<std::vector<KeyframeId>> runsNear(const Map& map, KeyframeId end, const RegistrationPrior& prior,
                                               const RevisitConfig& config) {
   const double radius_m = 0.5 * config.range_m + 3.0 * prior.stddev_xy_m;
   return runsWithin(radius_m, prior.T_a_b.translation_m, map, end);
@@ -60,7 +58,7 @@ Pass makePass(const Map& map, const std::vector<KeyframeId>& keyframes) {
   std::map<LandmarkId, EarlierLandmark> landmarks;
   for (const KeyframeId keyframe : keyframes) {
     for (const SceneObject& object : map.keyframes()[keyframe].scene.objects) {
-      const AlignmentPoint point = moved(map.T_map_keyframe(keyframe), object);
+      const RegistrationPoint point = moved(map.T_map_keyframe(keyframe), object);
       EarlierLandmark& landmark = landmarks[object.landmark];
       if (++landmark.sightings == 1) {
         landmark.point = point;
@@ -78,24 +76,6 @@ Pass makePass(const Map& map, const std::vector<KeyframeId>& keyframes) {
   return pass;
 }
 
-/// All six degrees of freedom from the pairs that an alignment in position and heading found.
-RefinedPose refined(const AlignmentHypothesis& alignment, const std::vector<AlignmentPoint>& seen, const Pass& pass,
-                    const RevisitConfig& config) {
-  const double floor_m2 = config.alignment.noise_floor_m * config.alignment.noise_floor_m;
-  const Eigen::Matrix3d R = alignment.T_a_b.rotation.toRotationMatrix();
-  std::vector<PointPair> pairs;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const int j = alignment.landmark_for_detection[i];
-    if (j < 0) continue;
-    const AlignmentPoint& landmark = pass.points[j];
-    PointPair pair{seen[i].position_m, landmark.position_m, R * seen[i].cov_m2 * R.transpose() + landmark.cov_m2};
-    pair.cov_m2.diagonal().array() += floor_m2;
-    pair.cov_m2(2, 2) += config.height_stddev_m * config.height_stddev_m;
-    pairs.push_back(pair);
-  }
-  return refinePose(alignment.T_a_b, pairs, config.alignment.tilt_stddev_rad, kHuberSigma, floor_m2);
-}
-
 KeyframeId nearestKeyframe(const Map& map, const std::vector<KeyframeId>& keyframes,
                            const Eigen::Vector3d& position_m) {
   const auto distance = [&](KeyframeId k) { return (map.T_map_keyframe(k).translation_m - position_m).squaredNorm(); };
@@ -105,33 +85,29 @@ KeyframeId nearestKeyframe(const Map& map, const std::vector<KeyframeId>& keyfra
 
 /// One record of laying a scene onto a pass; empty if nothing fits.
 std::optional<LoopClosureRecord> layOnto(const Map& map, const std::vector<KeyframeId>& run, const Scene& scene,
-                                         const AlignmentPrior& prior, const ClassTable& classes,
-                                         const RevisitConfig& config) {
-  std::vector<AlignmentPoint> seen;
-  for (const SceneObject& object : scene.objects) {
-    seen.push_back({object.position_m, object.cov_m2, object.class_index});
-  }
+                                         const RegistrationPrior& prior, const ClassTable& classes,
+                                         const RegistrationConfig& registration, const RevisitConfig& config) {
+  const std::vector<RegistrationPoint> seen = registrationPoints(scene);
   const Pass pass = makePass(map, run);
-  const auto modes = alignJointly(seen, pass.points, prior, classes, config.alignment);
+  const auto modes = align(pass.points, seen, prior, classes, registration);
   if (modes.empty()) return std::nullopt;
-  const AlignmentHypothesis& best = modes.front();
+  const RegistrationMode& best = modes.front();
   LoopClosureRecord record;
-  const RefinedPose pose = refined(best, seen, pass, config);
-  record.match_keyframe = nearestKeyframe(map, pass.keyframes, pose.T_a_b.translation_m);
-  record.T_match_query = map.T_map_keyframe(record.match_keyframe).inverse() * pose.T_a_b;
-  record.cov = pose.cov;
-  record.score = best.log_likelihood;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const int j = best.landmark_for_detection[i];
-    if (j < 0) continue;
-    const Eigen::Vector3d apart_m = pose.T_a_b * seen[i].position_m - pass.points[j].position_m;
+  record.match_keyframe = nearestKeyframe(map, pass.keyframes, best.T_a_b.translation_m);
+  record.T_match_query = map.T_map_keyframe(record.match_keyframe).inverse() * best.T_a_b;
+  record.cov = best.cov;
+  record.score = best.log_evidence;
+  for (const RegisteredPair& pair : best.pairs) {
+    const auto in_scene = static_cast<std::size_t>(pair.b);
+    const auto in_pass = static_cast<std::size_t>(pair.a);
+    const Eigen::Vector3d apart_m = best.T_a_b * seen[in_scene].position_m - pass.points[in_pass].position_m;
     if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
     ++record.inliers;
-    record.pairs.push_back({scene.objects[i].landmark, pass.ids[j]});
+    record.pairs.push_back({scene.objects[in_scene].landmark, pass.ids[in_pass]});
   }
-  if (best.log_likelihood < config.min_log_evidence) {
+  if (best.log_evidence < config.min_log_evidence) {
     record.reason = "too little evidence";
-  } else if (modes.size() > 1 && best.log_likelihood - modes[1].log_likelihood < config.min_log_margin) {
+  } else if (modes.size() > 1 && best.log_evidence - modes[1].log_evidence < config.min_log_margin) {
     record.reason = "ambiguous";
   }
   record.is_verified = record.reason.empty();
@@ -139,12 +115,6 @@ std::optional<LoopClosureRecord> layOnto(const Map& map, const std::vector<Keyfr
 }
 
 }  // namespace
-
-JointAlignmentConfig RevisitConfig::wideTilt() {
-  JointAlignmentConfig config;
-  config.tilt_stddev_rad = 0.05;
-  return config;
-}
 
 void describe(RevisitConfig& config, Fields& fields) {
   fields.add("enabled", config.enabled,
@@ -162,17 +132,14 @@ void describe(RevisitConfig& config, Fields& fields) {
              "Least evidence over the second best alignment.");
   fields.add("pair_distance", config.pair_distance_m, "m", {0.01, 100.0},
              "Landmarks that an alignment pairs are one if they stand no further apart after it.");
-  fields.add("height_stddev", config.height_stddev_m, "m", {0.001, 100.0},
-             "Further deviation of an object's height: from elsewhere, another part of it is seen.");
-  fields.group("alignment", config.alignment);
 }
 
 std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m) {
   return runsWithin(kSamePlace_m, position_m, map, map.keyframes().nextId()).size();
 }
 
-AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config) {
-  AlignmentPrior prior;
+RegistrationPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config) {
+  RegistrationPrior prior;
   prior.T_a_b = T_map_base;
   prior.stddev_xy_m = std::min(config.max_stddev_m, config.base_stddev_m + config.drift_per_m * drifted_m);
   prior.stddev_z_m = std::max(0.5, 0.5 * prior.stddev_xy_m);
@@ -180,24 +147,27 @@ AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const Revisi
   return prior;
 }
 
-std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const AlignmentPrior& prior,
-                                         const ClassTable& classes, const RevisitConfig& config) {
+std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const RegistrationPrior& prior,
+                                         const ClassTable& classes, const RegistrationConfig& registration,
+                                         const RevisitConfig& config) {
   std::vector<LoopClosureRecord> records;
   for (const std::vector<KeyframeId>& run : runsNear(map, map.keyframes().nextId(), prior, config)) {
-    if (auto record = layOnto(map, run, scene, prior, classes, config)) records.push_back(std::move(*record));
+    if (auto record = layOnto(map, run, scene, prior, classes, registration, config))
+      records.push_back(std::move(*record));
   }
   return records;
 }
 
 std::vector<LoopClosureRecord> findRevisits(const Map& map, KeyframeId query, double drifted_m,
-                                            const ClassTable& classes, const RevisitConfig& config) {
+                                            const ClassTable& classes, const RegistrationConfig& registration,
+                                            const RevisitConfig& config) {
   const Keyframe& asked = map.keyframes()[query];
-  const AlignmentPrior prior = driftPrior(map.T_map_keyframe(query), drifted_m, config);
+  const RegistrationPrior prior = driftPrior(map.T_map_keyframe(query), drifted_m, config);
   KeyframeId end(0);
   while (end < query && map.keyframes()[end].driven_m <= asked.driven_m - config.min_driven_m) ++end;
   std::vector<LoopClosureRecord> records;
   for (const std::vector<KeyframeId>& run : runsNear(map, end, prior, config)) {
-    auto record = layOnto(map, run, asked.scene, prior, classes, config);
+    auto record = layOnto(map, run, asked.scene, prior, classes, registration, config);
     if (!record) continue;
     record->query_keyframe = query;
     records.push_back(std::move(*record));

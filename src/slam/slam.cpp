@@ -50,8 +50,8 @@ SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
                   {},
                   {}};
   if (config.method == Method::kOdometry) return parts;
-  parts.mapper.emplace(config.mapper, classes);
-  parts.closer.emplace(config.back_end, classes);
+  parts.mapper.emplace(config.mapper, classes, config.registration);
+  parts.closer.emplace(config.back_end, classes, config.registration);
   return parts;
 }
 
@@ -77,6 +77,7 @@ void describe(SlamConfig& config, Fields& fields) {
                      "How the map is made; ukf and mhm have other defaults for some keys (docs/method.md).");
   fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
   fields.group("input", config.input);
+  fields.group("registration", config.registration);
   describe(config.mapper, fields);
   describe(config.back_end, fields);
   fields.group("localization", config.localization);

@@ -29,7 +29,7 @@ std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph) 
   return landmarks;
 }
 
-EarlierMap earlierMapAround(const AlignmentPrior& prior, const Map& map, const MapGraph& graph,
+EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, const MapGraph& graph,
                             std::size_t recent_submaps) {
   EarlierMap earlier;
   earlier.stddev_xy_m = prior.stddev_xy_m;

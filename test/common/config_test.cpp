@@ -89,6 +89,12 @@ TEST_F(ConfigTest, AllProblemsAreReportedTogetherAndNothingChanges) {
   EXPECT_EQ(config_.count, 3);
 }
 
+TEST_F(ConfigTest, AKeyThatMovedToAnotherGroupIsPointedAtThere) {
+  const auto problems = problemsOf({{"somewhere.else.shape", "round", "f:1"}});
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0], "f:1: unknown key 'somewhere.else.shape', did you mean 'inner.shape'?");
+}
+
 TEST_F(ConfigTest, YamlNestsByDots) {
   EXPECT_EQ(toYaml(fields_), "count: 3\nis_on: false\nname: 'x'\nseed: 1\ninner:\n  length: 30\n  shape: round\n");
 }

@@ -12,7 +12,7 @@ namespace {
 const ClassTable kClasses = makeStreetClasses();
 
 PairDescriptor descriptorOf(const Scene& scene) {
-  return describePairs(makePlanarScene(scene, kClasses, 0.15), kClasses, {});
+  return describePairs(scene, kClasses, 0.15, {});
 }
 
 /// The scene without noise from another pose.

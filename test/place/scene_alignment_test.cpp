@@ -1,11 +1,7 @@
 #include "semantic_mht_slam/place/scene_alignment.h"
 
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "scene_test_util.h"
@@ -13,134 +9,42 @@
 namespace semantic_mht_slam {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
 const ClassTable kClasses = makeStreetClasses();
 
-std::vector<SceneAlignment> align(const Scene& query, const Scene& match, const SceneAlignmentConfig& config) {
-  return alignScenes(makePlanarScene(query, kClasses, config.noise_floor_m),
-                     makePlanarScene(match, kClasses, config.noise_floor_m), kClasses, config);
+std::vector<SceneAlignment> align(const Scene& query, const Scene& match) {
+  return alignScenes(query, match, kClasses, {}, {});
 }
 
-/// Step on the right of `T_estimate` that leads to `T_truth`: translation, rotation.
-Vector6 errorOf(const Pose& T_estimate, const Pose& T_truth) {
-  const Pose step = T_estimate.inverse() * T_truth;
-  Vector6 error;
-  error << step.translation_m, logRotation(step.rotation);
-  return error;
-}
-
-class SceneAlignmentSearchTest : public ::testing::TestWithParam<AlignmentSearch> {
- protected:
-  SceneAlignmentSearchTest() { config_.search = GetParam(); }
-
-  void expectFound(const Scene& query, const Scene& match, const Pose& T_match_query, int seed) const {
-    const std::vector<SceneAlignment> found = align(query, match, config_);
-    ASSERT_FALSE(found.empty()) << "seed " << seed;
-    const Vector6 error = errorOf(found.front().T_match_query, T_match_query);
-    EXPECT_LT(error.head<2>().norm(), 0.3) << "seed " << seed;
-    EXPECT_LT(error.tail<3>().norm(), 0.04) << "seed " << seed;
-  }
-
-  SceneAlignmentConfig config_;
-};
-
-TEST_P(SceneAlignmentSearchTest, FindsTheMotionInTheOppositeDirectionOfTravel) {
+TEST(SceneAlignmentTest, TheSamePlaceScoresNearlyAllItsObjects) {
   for (int seed = 0; seed < 20; ++seed) {
     Rng rng(seed);
     const Scene match = makeStreet(30, 0.05, rng);
-    const Pose T_match_query = planarPose(rng.uniform(-4.0, 4.0), rng.uniform(-4.0, 4.0), M_PI + rng.normal(0.0, 0.1));
-    expectFound(seenFrom(match, T_match_query, rng), match, T_match_query, seed);
+    const Scene query = seenFrom(match, planarPose(1.0, -2.0, M_PI + rng.normal(0.0, 0.1)), rng);
+    const std::vector<SceneAlignment> found = align(query, match);
+    ASSERT_FALSE(found.empty()) << "seed " << seed;
+    const SceneAlignment& best = found.front();
+    EXPECT_EQ(best.pair_classes, 3);
+    EXPECT_GT(best.spread_m, 5.0);
+    EXPECT_GT(best.soft_inliers, 22.0);
+    EXPECT_LE(best.static_inliers, best.soft_inliers);
+    EXPECT_GT(best.similarity, 0.8 * best.soft_inliers) << "seed " << seed;
+    EXPECT_EQ(checkAlignment(best, rivalSimilarity(found, {}), {}), PlaceRefusal::kNone) << "seed " << seed;
   }
 }
 
-TEST_P(SceneAlignmentSearchTest, SurvivesPartialOverlapAndCarsThatLeft) {
-  for (int seed = 0; seed < 20; ++seed) {
-    Rng rng(100 + seed);
-    const Scene world = makeStreet(60, 0.05, rng);
-    const Pose T_match_query = planarPose(rng.uniform(-5.0, 5.0), rng.uniform(-3.0, 3.0), rng.uniform(-M_PI, M_PI));
-    Scene query = seenFrom(world, T_match_query, rng);
-    Scene match = world;
-    const auto left = [&](const SceneObject& object) { return object.class_index == 2 && rng.bernoulli(0.6); };
-    query.objects.erase(std::remove_if(query.objects.begin(), query.objects.end(), left), query.objects.end());
-    const auto beyond = [](const SceneObject& object) { return object.position_m.x() > 15.0; };
-    match.objects.erase(std::remove_if(match.objects.begin(), match.objects.end(), beyond), match.objects.end());
-    expectFound(query, match, T_match_query, seed);
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Searches, SceneAlignmentSearchTest,
-                         ::testing::Values(AlignmentSearch::kVotes, AlignmentSearch::kClique,
-                                           AlignmentSearch::kRansac));
-
-TEST(SceneAlignmentTest, SurvivesFourWrongObjectsForEachRightOne) {
-  for (int seed = 0; seed < 20; ++seed) {
-    Rng rng(200 + seed);
-    const Scene common = makeStreet(12, 0.03, rng);
-    const Pose T_match_query = planarPose(rng.uniform(-4.0, 4.0), rng.uniform(-4.0, 4.0), rng.uniform(-M_PI, M_PI));
-    Scene query = seenFrom(common, T_match_query, rng);
-    Scene match = common;
-    for (const SceneObject& object : makeStreet(48, 0.03, rng).objects) query.objects.push_back(object);
-    for (const SceneObject& object : makeStreet(48, 0.03, rng).objects) match.objects.push_back(object);
-    const std::vector<SceneAlignment> found = align(query, match, {});
-    ASSERT_FALSE(found.empty());
-    EXPECT_LT(errorOf(found.front().T_match_query, T_match_query).head<2>().norm(), 0.4) << "seed " << seed;
-  }
-}
-
-/// Mean of the normalised squared error over seeds, which is 6 when the covariance is right.
-double meanNees(bool mapped) {
-  SceneAlignmentConfig config;
-  config.noise_floor_m = 0.001;
-  config.height_stddev_m = 0.001;
-  double sum = 0.0;
-  constexpr int kSeeds = 100;
-  for (int seed = 0; seed < kSeeds; ++seed) {
-    Rng rng(1000 + seed);
-    Scene match = makeStreet(25, 0.2, rng);
-    const Pose T_match_query = planarPose(rng.normal(), rng.normal(), rng.uniform(-M_PI, M_PI));
-    Scene truth = match;
-    for (SceneObject& object : truth.objects) object.cov_m2 *= 1e-12;
-    Scene query = seenFrom(truth, T_match_query, rng);
-    Eigen::Vector3d common_m(rng.normal(), rng.normal(), rng.normal());
-    for (SceneObject& object : match.objects) {
-      const Eigen::Vector3d own_m(rng.normal(), rng.normal(), rng.normal());
-      object.position_m += 0.2 * (mapped ? common_m : own_m);
-      if (mapped) object.landmark = 1;
-    }
-    for (SceneObject& object : query.objects) {
-      object.cov_m2 = Eigen::Matrix3d::Identity() * 0.04;
-      for (int axis = 0; axis < 3; ++axis) object.position_m(axis) += rng.normal(0.0, 0.2);
-    }
-    const std::vector<SceneAlignment> found = align(query, match, config);
-    if (found.empty()) return 1e9;
-    const Vector6 error = errorOf(found.front().T_match_query, T_match_query);
-    sum += error.dot(found.front().cov.ldlt().solve(error));
-  }
-  return sum / kSeeds;
-}
-
-TEST(SceneAlignmentTest, CovarianceIsConsistentForIndependentErrorsOfDetections) {
-  const double nees = meanNees(false);  // roll and pitch are better than their prior says, hence the lower bound
-  EXPECT_LT(nees, 7.2);
-  EXPECT_GT(nees, 3.0);
-}
-
-TEST(SceneAlignmentTest, CovarianceIsConsistentForAnErrorThatMappedLandmarksShare) {
-  const double nees = meanNees(true);
-  EXPECT_LT(nees, 7.2);
-  EXPECT_GT(nees, 2.5);
-}
-
-TEST(SceneAlignmentTest, IsNeverMoreCertainThanTheLandmarks) {
-  Rng rng(5);
-  Scene match = makeStreet(60, 0.3, rng);
-  for (SceneObject& object : match.objects) object.landmark = 1;
-  const Scene query = seenFrom(match, planarPose(1.0, 2.0, 0.3), rng);
-  const std::vector<SceneAlignment> found = align(query, match, {});
-  ASSERT_FALSE(found.empty());
-  const Eigen::Matrix3d excess = found.front().cov.topLeftCorner<3, 3>() - 0.09 * Eigen::Matrix3d::Identity();
-  EXPECT_TRUE((Eigen::Vector3d(excess.selfadjointView<Eigen::Lower>().eigenvalues()).array() > -1e-9).all());
+TEST(SceneAlignmentTest, ObjectsThatMayDriveAwayCountLess) {
+  Rng rng(3);
+  const Scene match = makeStreet(30, 0.02, rng);
+  PlaceConfig all_alike;
+  all_alike.movable_weight = 1.0;
+  const auto less = alignScenes(match, match, kClasses, {}, {});
+  const auto alike = alignScenes(match, match, kClasses, {}, all_alike);
+  ASSERT_FALSE(less.empty());
+  ASSERT_FALSE(alike.empty());
+  int movable = 0;
+  for (const SceneObject& object : match.objects) movable += object.class_index == 2;
+  EXPECT_NEAR(alike.front().soft_inliers - less.front().soft_inliers, movable * (1.0 - PlaceConfig{}.movable_weight),
+              1e-6);
 }
 
 TEST(SceneAlignmentTest, OrderOfObjectsChangesNothing) {
@@ -149,36 +53,57 @@ TEST(SceneAlignmentTest, OrderOfObjectsChangesNothing) {
   const Scene query = seenFrom(match, planarPose(1.0, 2.0, 2.0), rng);
   Scene reversed = query;
   std::reverse(reversed.objects.begin(), reversed.objects.end());
-  const std::vector<SceneAlignment> a = align(query, match, {});
-  const std::vector<SceneAlignment> b = align(reversed, match, {});
+  const std::vector<SceneAlignment> a = align(query, match);
+  const std::vector<SceneAlignment> b = align(reversed, match);
   ASSERT_EQ(a.size(), b.size());
   ASSERT_FALSE(a.empty());
-  EXPECT_EQ(a.front().T_match_query.translation_m, b.front().T_match_query.translation_m);
+  EXPECT_EQ(a.front().mode.T_a_b.translation_m, b.front().mode.T_a_b.translation_m);
   EXPECT_EQ(a.front().similarity, b.front().similarity);
-  EXPECT_EQ(a.front().cov, b.front().cov);
+  EXPECT_EQ(a.front().mode.cov, b.front().mode.cov);
 }
 
-TEST(SceneAlignmentTest, EmptyScenesAndSingleObjectsHaveNoAlignment) {
-  Rng rng(7);
-  const Scene street = makeStreet(20, 0.05, rng);
-  Scene one;
-  one.objects.push_back(street.objects.front());
-  EXPECT_TRUE(align({}, street, {}).empty());
-  EXPECT_TRUE(align(street, {}, {}).empty());
-  EXPECT_TRUE(align(one, street, {}).empty());
+TEST(SceneAlignmentTest, ARowThatRepeatsItselfHasARival) {
+  Scene row;
+  for (int i = 0; i < 20; ++i) {
+    SceneObject object;
+    object.position_m = {5.0 * (i / 2) - 25.0, i % 2 == 0 ? 8.0 : -8.0, 0.0};
+    object.cov_m2 = 0.01 * Eigen::Matrix3d::Identity();
+    object.class_index = 0;
+    row.objects.push_back(object);
+  }
+  const std::vector<SceneAlignment> found = align(row, row);
+  ASSERT_FALSE(found.empty());
+  PlaceConfig config;
+  config.min_classes = 1;
+  EXPECT_EQ(checkAlignment(found.front(), rivalSimilarity(found, config), config), PlaceRefusal::kAmbiguous);
 }
 
-TEST(SceneAlignmentTest, BadObjectsAreRefused) {
-  Rng rng(8);
-  Scene scene = makeStreet(3, 0.05, rng);
-  scene.objects[1].class_index = 3;
-  EXPECT_THROW(makePlanarScene(scene, kClasses, 0.1), std::invalid_argument);
-  scene.objects[1].class_index = 0;
-  scene.objects[1].position_m.x() = NAN;
-  EXPECT_THROW(makePlanarScene(scene, kClasses, 0.1), std::invalid_argument);
-  scene.objects[1].position_m.x() = 0.0;
-  scene.objects[1].cov_m2.setZero();
-  EXPECT_THROW(makePlanarScene(scene, kClasses, 0.1), std::invalid_argument);
+TEST(SceneAlignmentTest, AlignmentsOfOnePlaceAreNoRivals) {
+  std::vector<SceneAlignment> found(2);
+  found[0].similarity = 10.0;
+  found[1].similarity = 9.0;
+  found[1].mode.T_a_b.translation_m.x() = 0.9 * PlaceConfig{}.agree_m;
+  EXPECT_EQ(rivalSimilarity(found, {}), -1.0);
+  found[1].mode.T_a_b.translation_m.x() = 1.1 * PlaceConfig{}.agree_m;
+  EXPECT_EQ(rivalSimilarity(found, {}), 9.0);
+}
+
+TEST(SceneAlignmentTest, ARowOfObjectsAndASingleClassAreRefused) {
+  Scene row;
+  Rng rng(2);
+  for (int i = 0; i < 12; ++i) {
+    SceneObject object;
+    object.position_m = {rng.uniform(-40.0, 40.0), 8.0, 0.0};
+    object.cov_m2 = 0.01 * Eigen::Matrix3d::Identity();
+    object.class_index = 0;
+    row.objects.push_back(object);
+  }
+  const std::vector<SceneAlignment> found = align(row, row);
+  ASSERT_FALSE(found.empty());
+  PlaceConfig config;
+  EXPECT_EQ(checkAlignment(found.front(), -1.0, config), PlaceRefusal::kFewClasses);
+  config.min_classes = 1;
+  EXPECT_EQ(checkAlignment(found.front(), -1.0, config), PlaceRefusal::kOnALine);
 }
 
 }  // namespace

@@ -12,6 +12,13 @@ struct Gaussian3 {
   Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();
 };
 
+/// A covariance that rounding has left not quite symmetric, symmetric again.
+template <typename Derived>
+typename Derived::PlainObject symmetric(const Eigen::MatrixBase<Derived>& covariance) {
+  const typename Derived::PlainObject plain = covariance;
+  return 0.5 * (plain + plain.transpose());
+}
+
 /// True if the matrix is finite, symmetric (relative 1e-9) and positive definite.
 bool isCovariance(const Eigen::Matrix3d& matrix);
 

@@ -36,6 +36,13 @@ Eigen::Vector3d logRotation(const Eigen::Quaterniond& rotation);
 /// Rotation of an axis-angle vector in radians; inverse of `logRotation` for norms below pi.
 Eigen::Quaterniond expRotation(const Eigen::Vector3d& axis_angle_rad);
 
+/// Matrix of the cross product: skew(v) * w = v x w.
+inline Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
 /// Angle between two rotations in radians, in [0, pi].
 double angularDistance(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 

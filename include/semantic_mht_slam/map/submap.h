@@ -31,8 +31,8 @@ struct NearLandmarks {
 /// Where a submap lies in the map of earlier passes, as the hypotheses over joint alignments found it.
 struct MapAlignment {
   Pose T_earlier_submap;  ///< into the predicted frame that the earlier map was given in
-  /// Covariance of x, y, z of the submap's origin (axes of the predicted frame, m) and of its heading (rad).
-  Eigen::Matrix4d cov = Eigen::Matrix4d::Zero();
+  /// Of T_earlier_submap: order translation (m), rotation (rad), in the frame of the submap, a small step on the right.
+  Eigen::Matrix<double, 6, 6> cov = Eigen::Matrix<double, 6, 6>::Zero();
   double weight = 0.0;  ///< summed weight of the hypotheses that agree
   int matches = 0;      ///< landmarks that submap and earlier map have in common
   bool is_accepted = false;

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/common/pose.h"
 #include "semantic_mht_slam/map/landmark.h"
-#include "semantic_mht_slam/mapping/joint_alignment.h"
 
 namespace semantic_mht_slam {
 
@@ -30,7 +30,6 @@ struct MapAlignmentConfig {
   double max_log_evidence = 2.0;
   double accept_prob = 0.9;
   int min_matches = 5;
-  JointAlignmentConfig joint;
 };
 
 void describe(MapAlignmentConfig& config, Fields& fields);

@@ -18,7 +18,8 @@ class StateArchive;
 /// The multiple-hypothesis tree of one submap (paper, section II): its leaves, weighted, by falling weight.
 class MultiHypothesisTree {
  public:
-  MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes);
+  MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes,
+                      const RegistrationConfig& registration = {});
 
   /// Starts again from one hypothesis, in surroundings that an earlier map may show.
   void restart(std::vector<HypothesisLandmark> landmarks, EarlierMap earlier_map = {});

@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/mapping/earlier_map.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/registration/registration.h"
 
 namespace semantic_mht_slam {
 
@@ -27,7 +28,7 @@ double logExpectationEvidence(int found, double missed);
 /// agree between branches; the offset learns from it.
 class MapBranching {
  public:
-  MapBranching(const MapAlignmentConfig& config, const ClassTable& classes);
+  MapBranching(const MapAlignmentConfig& config, const ClassTable& classes, const RegistrationConfig& registration);
 
   /// A submap begins.
   void restart(EarlierMap map);
@@ -53,9 +54,9 @@ class MapBranching {
  private:
   using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap
 
-  std::vector<AlignmentHypothesis> align(const std::vector<const TrackedLandmark*>& landmarks,
-                                         const AlignmentPrior& prior, std::vector<LandmarkId>& ids) const;
-  Matches matchesOf(const AlignmentHypothesis& mode, const std::vector<LandmarkId>& ids) const;
+  std::vector<RegistrationMode> modesOf(const std::vector<const TrackedLandmark*>& landmarks,
+                                        const RegistrationPrior& prior, std::vector<LandmarkId>& ids) const;
+  Matches matchesOf(const RegistrationMode& mode, const std::vector<LandmarkId>& ids) const;
   MapHypothesis aligned(const MapHypothesis& leaf, const PoseOffset& offset, Matches matches,
                         const TreeInput& input) const;
   void matchTheRest(const MapHypothesis& leaf, const EarlierMapPlacement& placement, Matches& matches) const;
@@ -64,6 +65,7 @@ class MapBranching {
 
   MapAlignmentConfig config_;
   ClassTable classes_;
+  RegistrationConfig registration_;
   EarlierMap map_;  ///< landmarks by rising id
   double next_attempt_m_ = 0.0;
   mutable std::vector<int> earlier_of_point_;  ///< of the points that were aligned last

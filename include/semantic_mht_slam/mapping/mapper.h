@@ -30,7 +30,7 @@ struct FinishedSubmap {
 /// Builds submaps: stretches of fixed travelled length, each with a hypothesis tree of its own (paper, section II).
 class Mapper {
  public:
-  Mapper(const MapperConfig& config, const ClassTable& classes);
+  Mapper(const MapperConfig& config, const ClassTable& classes, const RegistrationConfig& registration = {});
 
   /// Begins a submap where the odometry is, in surroundings that an earlier map may show. Only between submaps, else
   /// throws std::logic_error.

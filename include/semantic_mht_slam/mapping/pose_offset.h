@@ -17,6 +17,11 @@ struct PoseOffset {
 /// The corrected pose of the base in the submap.
 Pose corrected(const Pose& T_submap_base, const PoseOffset& offset);
 
+/// Covariance of the corrected pose of an offset from the identity, as a small step on its right: order translation
+/// (m), rotation (rad), axes of the base. Roll and pitch, of which an offset says nothing, are known to
+/// `tilt_stddev_rad`.
+Eigen::Matrix<double, 6, 6> stepCov(const PoseOffset& offset, double tilt_stddev_rad);
+
 /// Covariance that the offset's uncertainty gives to a point seen at `lever_m` from the base (submap axes), m^2.
 Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_m);
 

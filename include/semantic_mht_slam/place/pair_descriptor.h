@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 
 #include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/map/scene.h"
 #include "semantic_mht_slam/models/class_table.h"
-#include "semantic_mht_slam/place/planar_scene.h"
 
 namespace semantic_mht_slam {
 
@@ -21,9 +21,12 @@ void describe(PairDescriptorConfig& config, Fields& fields);
 /// its objects, a histogram a pair of classes. Unit length, or zero for a scene with fewer than two objects.
 using PairDescriptor = Eigen::VectorXf;
 
-/// Descriptor of a scene: each pair of objects is spread over the bins by the deviation of its distance. A pair counts
-/// less for each end that may drive away. Does not depend on the order of the objects.
-PairDescriptor describePairs(const PlanarScene& scene, const ClassTable& classes, const PairDescriptorConfig& config);
+/// Descriptor of a scene: each pair of objects is spread over the bins by the standard deviation of its distance, to
+/// which the covariances, the Gaussian transition of the classes and `noise_floor_m` of each object contribute. A pair
+/// counts less for each end that may drive away. Does not depend on the order of the objects.
+/// Throws std::invalid_argument for a class that the table lacks.
+PairDescriptor describePairs(const Scene& scene, const ClassTable& classes, double noise_floor_m,
+                             const PairDescriptorConfig& config);
 
 /// Bhattacharyya coefficient in [0, 1] of two descriptors of one configuration; zero when one is empty.
 double descriptorSimilarity(const PairDescriptor& a, const PairDescriptor& b);

@@ -3,7 +3,6 @@
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/place/pair_descriptor.h"
 #include "semantic_mht_slam/place/paper_chain.h"
-#include "semantic_mht_slam/place/scene_alignment.h"
 
 namespace semantic_mht_slam {
 
@@ -23,6 +22,8 @@ struct PlaceConfig {
   int max_compared = 400;
   int max_candidates = 5;
   double min_descriptor_score = 0.2;
+  double full_residual_m = 0.35;
+  double movable_weight = 0.7;
   int min_inliers = 6;
   int min_classes = 2;
   double min_spread_m = 2.0;
@@ -39,7 +40,6 @@ struct PlaceConfig {
   double support_reach_m = 60.0;
   PairDescriptorConfig descriptor;
   PaperChainConfig paper;
-  SceneAlignmentConfig alignment;
 };
 
 void describe(PlaceConfig& config, Fields& fields);

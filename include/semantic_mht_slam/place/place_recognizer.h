@@ -12,7 +12,7 @@
 #include "semantic_mht_slam/place/paper_chain.h"
 #include "semantic_mht_slam/place/place_config.h"
 #include "semantic_mht_slam/place/place_match.h"
-#include "semantic_mht_slam/place/planar_scene.h"
+#include "semantic_mht_slam/registration/registration_config.h"
 
 namespace semantic_mht_slam {
 
@@ -40,7 +40,7 @@ struct PlacesOfSubmap {
 /// keyframe; a match that contradicts a rival of nearly its score is refused.
 class PlaceRecognizer {
  public:
-  PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes);
+  PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes, const RegistrationConfig& registration = {});
 
   /// Searches the keyframes of a finished submap among those of earlier submaps, then adds them. `T_map_keyframe` are
   /// the present estimates of all keyframes so far, the new ones at the end. Returns a record of every candidate that
@@ -60,13 +60,11 @@ class PlaceRecognizer {
 
   std::size_t keyframes() const { return places_.size(); }
 
-  /// Without their scenes.
   const Keyframe& keyframe(std::size_t index) const { return places_.at(index).keyframe; }
 
  private:
   struct Place {
     Keyframe keyframe;
-    PlanarScene scene;
     PairDescriptor descriptor;
   };
 
@@ -93,6 +91,7 @@ class PlaceRecognizer {
 
   PlaceConfig config_;
   ClassTable classes_;
+  RegistrationConfig registration_;
   std::vector<Place> places_;
   std::optional<PaperChain> paper_;
   std::vector<PlaceMatch> recent_;  ///< the best candidate of each of the last keyframes, if it passed the checks

@@ -14,7 +14,7 @@ class StateArchive;
 
 /// Where a submap that begins is believed to be, and where the keyframes were believed to be at that time.
 struct SubmapPrediction {
-  AlignmentPrior prior;  ///< of T_map_submap
+  RegistrationPrior prior;  ///< of T_map_submap
   IdVector<KeyframeId, Pose> T_map_keyframe;
 };
 
@@ -38,7 +38,7 @@ struct ClosureQuery {
 class LoopCloser {
  public:
   /// Throws InputError if the evaluator's tree is needed and cannot be used.
-  LoopCloser(const BackEndConfig& config, const ClassTable& classes);
+  LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration);
 
   /// Takes the newest submap of the map in. The queries after this are about it.
   void add(const Map& map);
@@ -76,6 +76,7 @@ class LoopCloser {
 
   BackEndConfig config_;
   ClassTable classes_;
+  RegistrationConfig registration_;
   SubmapEvaluator evaluator_;
   PlaceRecognizer places_;
   std::vector<KeyframeId> keyframe_of_place_;

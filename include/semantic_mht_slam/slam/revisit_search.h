@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/map/map.h"
-#include "semantic_mht_slam/mapping/joint_alignment.h"
+#include "semantic_mht_slam/registration/registration.h"
 
 namespace semantic_mht_slam {
 
@@ -20,11 +20,6 @@ struct RevisitConfig {
   double min_log_evidence = 12.0;
   double min_log_margin = 6.0;
   double pair_distance_m = 1.0;
-  double height_stddev_m = 0.3;
-  JointAlignmentConfig alignment = wideTilt();
-
-  /// Between two passes roll and pitch drift, too.
-  static JointAlignmentConfig wideTilt();
 };
 
 void describe(RevisitConfig& config, Fields& fields);
@@ -35,17 +30,19 @@ std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m);
 
 /// How far the pose may be off from the earlier map after `drifted_m` of driving since it was last tied to it; in the
 /// frame of `T_map_base`.
-AlignmentPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config);
+RegistrationPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config);
 
 /// Lays a scene onto what each pass saw near the pose that `prior` expects. One record for each pass that it might fit;
 /// the query is no keyframe.
-std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const AlignmentPrior& prior,
-                                         const ClassTable& classes, const RevisitConfig& config);
+std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const RegistrationPrior& prior,
+                                         const ClassTable& classes, const RegistrationConfig& registration,
+                                         const RevisitConfig& config);
 
 /// Lays what a keyframe sees onto what each earlier pass, at least `min_driven_m` before, saw near there, all at once,
-/// with the drift since the last closure as prior (see `alignJointly`). One record for each pass that it might fit.
+/// with the drift since the last closure as prior (see `align`). One record for each pass that it might fit.
 /// `drifted_m` was driven since the pose was last tied to the earlier map.
 std::vector<LoopClosureRecord> findRevisits(const Map& map, KeyframeId query, double drifted_m,
-                                            const ClassTable& classes, const RevisitConfig& config);
+                                            const ClassTable& classes, const RegistrationConfig& registration,
+                                            const RevisitConfig& config);
 
 }  // namespace semantic_mht_slam

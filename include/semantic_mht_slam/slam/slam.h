@@ -36,6 +36,7 @@ struct SlamConfig {
   Method method = Method::kDpmhm;
   std::uint64_t seed = 1;
   FrameAssemblerConfig input;
+  RegistrationConfig registration;
   MapperConfig mapper;
   BackEndConfig back_end;
   LocalizerConfig localization;

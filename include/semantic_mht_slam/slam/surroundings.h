@@ -14,7 +14,7 @@ std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph);
 
 /// What earlier passes know of the surroundings of a submap that begins where `prior` says; what was seen in the newest
 /// `recent_submaps` submaps is of the present pass.
-EarlierMap earlierMapAround(const AlignmentPrior& prior, const Map& map, const MapGraph& graph,
+EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, const MapGraph& graph,
                             std::size_t recent_submaps);
 
 /// True if a closure ties the newest submap to an earlier pass, and every place of it was passed at least `passes`

@@ -8,12 +8,12 @@
 #include <Eigen/Geometry>
 
 #include "semantic_mht_slam/common/random.h"
-#include "semantic_mht_slam/mapping/joint_alignment.h"
+#include "semantic_mht_slam/registration/registration.h"
 
 namespace semantic_mht_slam {
 namespace testing {
 
-using Points = std::vector<AlignmentPoint>;
+using Points = std::vector<RegistrationPoint>;
 
 constexpr ClassIndex kPole = 0;
 constexpr ClassIndex kSign = 1;
@@ -38,8 +38,8 @@ inline ClassTable classTable() {
           "test"};
 }
 
-inline AlignmentPoint point(const Eigen::Vector3d& position_m, ClassIndex class_index,
-                            double stddev_m = kPointStddev_m) {
+inline RegistrationPoint point(const Eigen::Vector3d& position_m, ClassIndex class_index,
+                               double stddev_m = kPointStddev_m) {
   return {position_m, stddev_m * stddev_m * Eigen::Matrix3d::Identity(), class_index};
 }
 
@@ -52,7 +52,7 @@ inline Points street(int count, Rng& rng) {
   Points points;
   while (static_cast<int>(points.size()) < count) {
     const Eigen::Vector3d position_m(rng.uniform(-35.0, 35.0), rng.uniform(-12.0, 12.0), rng.uniform(-1.0, 1.0));
-    const bool is_free = std::all_of(points.begin(), points.end(), [&](const AlignmentPoint& other) {
+    const bool is_free = std::all_of(points.begin(), points.end(), [&](const RegistrationPoint& other) {
       return (other.position_m - position_m).norm() > 3.0;
     });
     if (is_free) points.push_back(point(position_m, static_cast<ClassIndex>(rng.index(3))));
@@ -62,7 +62,7 @@ inline Points street(int count, Rng& rng) {
 
 inline Points moved(Points points, const Pose& T_target_source) {
   const Eigen::Matrix3d rotation = T_target_source.rotation.toRotationMatrix();
-  for (AlignmentPoint& p : points) {
+  for (RegistrationPoint& p : points) {
     p.position_m = T_target_source * p.position_m;
     p.cov_m2 = rotation * p.cov_m2 * rotation.transpose();
     p.cov_m2 = 0.5 * (p.cov_m2 + p.cov_m2.transpose()).eval();
@@ -75,7 +75,7 @@ struct World {
   Points landmarks;
   Points detections;
   Pose T_a_b;
-  AlignmentPrior prior;
+  RegistrationPrior prior;
 };
 
 inline World world(std::uint64_t seed, double noise_stddev_m, int count = 20) {
@@ -87,7 +87,7 @@ inline World world(std::uint64_t seed, double noise_stddev_m, int count = 20) {
                   {rng.uniform(-100.0, 100.0), rng.uniform(-100.0, 100.0), rng.uniform(-5.0, 5.0)}};
   result.landmarks = moved(seen, result.T_a_b);
   result.detections = seen;
-  for (AlignmentPoint& detection : result.detections) {
+  for (RegistrationPoint& detection : result.detections) {
     for (int k = 0; k < 3; ++k) detection.position_m(k) += rng.normal(0.0, noise_stddev_m);
   }
   result.prior = {turned(result.T_a_b, rng.uniform(-0.05, 0.05)), 4.0, 0.5, 0.03};
@@ -95,8 +95,29 @@ inline World world(std::uint64_t seed, double noise_stddev_m, int count = 20) {
   return result;
 }
 
-inline std::vector<AlignmentHypothesis> align(const World& w, const JointAlignmentConfig& config = {}) {
-  return alignJointly(w.detections, w.landmarks, w.prior, classTable(), config);
+inline std::vector<RegistrationMode> align(const World& w, const RegistrationConfig& config = {}) {
+  return align(w.landmarks, w.detections, w.prior, classTable(), config);
+}
+
+/// Index in a of the counterpart of each of the `count` points of b, -1 for none.
+inline std::vector<int> counterparts(const RegistrationMode& mode, int count) {
+  std::vector<int> result(static_cast<std::size_t>(count), -1);
+  for (const RegisteredPair& pair : mode.pairs) result[static_cast<std::size_t>(pair.b)] = pair.a;
+  return result;
+}
+
+inline double softPairs(const RegistrationMode& mode) {
+  double sum = 0.0;
+  for (const RegisteredPair& pair : mode.pairs) sum += pair.right_prob;
+  return sum;
+}
+
+/// Step on the right of `T_estimate` that leads to `T_truth`: translation, rotation.
+inline Eigen::Matrix<double, 6, 1> errorOf(const Pose& T_estimate, const Pose& T_truth) {
+  const Pose step = T_estimate.inverse() * T_truth;
+  Eigen::Matrix<double, 6, 1> error;
+  error << step.translation_m, logRotation(step.rotation);
+  return error;
 }
 
 inline Eigen::Vector4d difference(const Pose& a, const Pose& b) {
