@@ -30,9 +30,8 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   RunResult result;
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
   const std::size_t known = trajectoryOf(slam).size();
-  const std::optional<StampedPose> last = slam.parts().sessions.latestOdometry();
-  const bool is_another_drive =
-      start != nullptr && last && !recording.odometry.empty() && !goesOn(*last, recording.odometry.front());
+  const bool is_another_drive = start != nullptr && slam.parts().sessions.latestOdometry() &&
+                                !recording.odometry.empty() && !slam.goesOn(recording.odometry.front());
   if (is_another_drive) slam.beginSession();
   const Stopwatch watch;
   auto frame = recording.detector_frames.begin();
@@ -57,6 +56,9 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.trajectory.assign(result.whole_trajectory.begin() + static_cast<std::ptrdiff_t>(known),
                            result.whole_trajectory.end());
   result.state = slam.snapshot();
+  result.sessions = slam.parts().sessions.summary(slam.map());
+  result.detector_range_m = slam.parts().range_factor * Length::kReferenceRange_m;
+  if (slam.parts().mapper) result.odometry_model = slam.parts().mapper->odometryModel();
   result.counters = slam.parts().assembler.counters();
   result.landmarks = landmarksOf(slam);
   result.loop_closures = loopClosures(slam.map());

@@ -122,6 +122,16 @@ Json summarizeChecks(const std::vector<SubmapResult>& submaps) {
           {"skipped_share", submaps.empty() ? 0.0 : 1.0 - checked / all}};
 }
 
+/// How often landmarks became one, were kept apart though a closure or duplicate test joined them, and were split
+/// again.
+Json summarizeIdentity(const std::vector<IdentityEvent>& ledger) {
+  std::map<IdentityEvent::Kind, std::size_t> counts;
+  for (const IdentityEvent& event : ledger) ++counts[event.kind];
+  return {{"merged", counts[IdentityEvent::Kind::kMerged]},
+          {"kept_apart", counts[IdentityEvent::Kind::kKeptApart]},
+          {"split", counts[IdentityEvent::Kind::kSplit]}};
+}
+
 std::size_t acceptedClosures(const std::vector<LoopClosureResult>& closures) {
   return static_cast<std::size_t>(std::count_if(
       closures.begin(), closures.end(), [](const LoopClosureResult& closure) { return closure.record.is_accepted; }));
@@ -150,7 +160,36 @@ Json toJson(const InputCounters& counters) {
           {"frames_in_odometry_gap", counters.frames_in_odometry_gap},
           {"frames_waiting_too_long", counters.frames_waiting_too_long},
           {"detections", counters.detections},
-          {"detections_invalid", counters.detections_invalid}};
+          {"detections_invalid", counters.detections_invalid},
+          {"detections_at_origin", counters.detections_at_origin},
+          {"covariances_unknown", counters.covariances_unknown},
+          {"frames_standing", counters.frames_standing}};
+}
+
+Json toJson(const std::vector<SessionSummary>& sessions) {
+  Json list = Json::array();
+  for (const SessionSummary& session : sessions) {
+    list.push_back({{"begin_s", secondsFromStamp(session.begin)}, {"is_located", session.is_located}});
+  }
+  return list;
+}
+
+Json toJson(const CoefficientEstimate& estimate) {
+  return {{"mean", estimate.mean}, {"stddev", estimate.stddev}};
+}
+
+Json toJson(const OdometryModel& model) {
+  return {{"along_m_per_sqrt_m", model.noise.along_m_per_sqrt_m},
+          {"across_m_per_sqrt_m", model.noise.across_m_per_sqrt_m},
+          {"up_m_per_sqrt_m", model.noise.up_m_per_sqrt_m},
+          {"heading_rad_per_sqrt_m", model.noise.heading_rad_per_sqrt_m},
+          {"heading_rad_per_sqrt_rad", model.noise.heading_rad_per_sqrt_rad},
+          {"tilt_rad_per_sqrt_m", model.noise.tilt_rad_per_sqrt_m},
+          {"scale_translation", toJson(model.systematic.scale_translation)},
+          {"scale_turn", toJson(model.systematic.scale_turn)},
+          {"heading_rad_per_m", toJson(model.systematic.heading_rad_per_m)},
+          {"direction_m_per_m", toJson(model.systematic.direction_m_per_m)},
+          {"lever_m_per_rad", toJson(model.systematic.lever_m_per_rad)}};
 }
 
 }  // namespace
@@ -198,9 +237,13 @@ void writeReport(const std::string& folder, const RunResult& result, const std::
                  {"submaps", result.submaps},
                  {"place", summarizeChecks(result.submap_checks)},
                  {"loop_closures", acceptedClosures(result.loop_closures)},
+                 {"identity", summarizeIdentity(result.identity)},
                  {"graph", {{"failures", result.graph.failures}, {"newest_failure", result.graph.newest_failure}}},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};
+  report["sessions"] = toJson(result.sessions);
+  report["detector_range_m"] = result.detector_range_m;
+  if (result.odometry_model) report["odometry_model"] = toJson(*result.odometry_model);
   if (error) report["error"] = toJson(*error);
   writeFileAtomically(folder + "/report.json", report.dump(2) + "\n");
 }

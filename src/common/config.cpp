@@ -64,7 +64,25 @@ void Fields::add(const std::string& name, double& value, const std::string& unit
     value = *number;
     return std::nullopt;
   };
-  append({name, "number", unit, describeRange(range), help, [&value] { return formatDouble(value); }, set});
+  append({name, "number", unit, describeRange(range), help, [&value] { return formatDouble(value); }, set, {}});
+}
+
+void Fields::add(const std::string& name, Length& value, const std::string& unit, Range range,
+                 const std::string& help) {
+  const auto set = [&value, range, initial = value](const std::string& text) -> std::optional<std::string> {
+    const std::optional<double> number = parseDouble(text);
+    if (text != "auto" && !number) return "is neither auto nor a number";
+    if (text == "auto") {
+      value = initial;
+      return std::nullopt;
+    }
+    if (auto problem = outside(*number, range)) return problem;
+    value = *number;
+    return std::nullopt;
+  };
+  const auto get = [&value] { return value.isAuto() ? std::string("auto") : formatDouble(value); };
+  const std::string allowed = describeRange(range) + ", or auto (" + formatDouble(value) + " for the reference range)";
+  append({name, "number or auto", unit, allowed, help, get, set, [&value](double factor) { value.scale(factor); }});
 }
 
 void Fields::add(const std::string& name, int& value, const std::string& unit, Range range, const std::string& help) {
@@ -77,7 +95,7 @@ void Fields::add(const std::string& name, int& value, const std::string& unit, R
     value = static_cast<int>(*number);
     return std::nullopt;
   };
-  append({name, "integer", unit, describeRange(range), help, [&value] { return std::to_string(value); }, set});
+  append({name, "integer", unit, describeRange(range), help, [&value] { return std::to_string(value); }, set, {}});
 }
 
 void Fields::add(const std::string& name, std::uint64_t& value, const std::string& unit, const std::string& help) {
@@ -87,7 +105,7 @@ void Fields::add(const std::string& name, std::uint64_t& value, const std::strin
     value = static_cast<std::uint64_t>(*number);
     return std::nullopt;
   };
-  append({name, "integer", unit, "at least 0", help, [&value] { return std::to_string(value); }, set});
+  append({name, "integer", unit, "at least 0", help, [&value] { return std::to_string(value); }, set, {}});
 }
 
 void Fields::add(const std::string& name, bool& value, const std::string& help) {
@@ -96,7 +114,7 @@ void Fields::add(const std::string& name, bool& value, const std::string& help) 
     value = text == "true";
     return std::nullopt;
   };
-  append({name, "true or false", "", "", help, [&value] { return value ? "true" : "false"; }, set});
+  append({name, "true or false", "", "", help, [&value] { return value ? "true" : "false"; }, set, {}});
 }
 
 void Fields::add(const std::string& name, std::string& value, const std::string& help) {
@@ -104,7 +122,7 @@ void Fields::add(const std::string& name, std::string& value, const std::string&
     value = text;
     return std::nullopt;
   };
-  append({name, "text", "", "", help, [&value] { return value; }, set});
+  append({name, "text", "", "", help, [&value] { return value; }, set, {}});
 }
 
 void Fields::addChoice(const std::string& name, const std::vector<std::string>& names, const std::string& help,
@@ -115,7 +133,7 @@ void Fields::addChoice(const std::string& name, const std::vector<std::string>& 
     set_index(static_cast<std::size_t>(found - names.begin()));
     return std::nullopt;
   };
-  append({name, "choice", "", joined(names), help, [names, get] { return names[get()]; }, set});
+  append({name, "choice", "", joined(names), help, [names, get] { return names[get()]; }, set, {}});
 }
 
 void applySettings(const std::vector<Setting>& settings, Fields& fields) {
@@ -143,6 +161,12 @@ void applySettings(const std::vector<Setting>& settings, Fields& fields) {
   if (problems.empty()) return;
   for (std::size_t i = 0; i < before.size(); ++i) fields.all()[i].set(before[i]);
   throw ConfigError(problems);
+}
+
+void scaleLengths(double factor, const Fields& fields) {
+  for (const Field& field : fields.all()) {
+    if (field.scale) field.scale(factor);
+  }
 }
 
 std::string toYaml(const Fields& fields) {

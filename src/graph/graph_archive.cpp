@@ -36,7 +36,8 @@ void transferCost(StateArchive& archive, std::unique_ptr<PointCost<3>>& cost) {
 }
 
 void requireIndex(int index, std::size_t size) {
-  if (index < 0 || index >= static_cast<int>(size)) StateArchive::fail("a number names no part of the graph");
+  const std::size_t place = index;  // a negative one is beyond any size
+  if (place >= size) StateArchive::fail("a number names no part of the graph");
 }
 
 }  // namespace

@@ -118,6 +118,7 @@ void transfer(StateArchive& archive, Submap& submap) {
 /// Without the scene.
 void transfer(StateArchive& archive, Keyframe& keyframe) {
   archive(keyframe.frame, keyframe.submap, keyframe.stamp, keyframe.driven_m, keyframe.T_odom_base);
+  archive(keyframe.turned_rad);
 }
 
 /// Of closures that never were in the pose graph only what people look at is kept.

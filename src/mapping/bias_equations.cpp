@@ -18,6 +18,7 @@ constexpr int kEntries = 8;   // two knots of the range bias, two of the height 
 constexpr int kPoseEntry = kEntries - kPoseSize;
 constexpr double kMinRange_m = 1.0;
 constexpr double kGaugeStddev = 1e-3;
+constexpr double kLeastVariance = 1e-10;
 
 /// An equation: landmark = point + J x, with the weight of its 3x3 information. Unknowns by rising index.
 struct Row {
@@ -196,14 +197,23 @@ class StretchEquations {
       J.col(first + 1).head<2>() << step.y(), -step.x();
       J(2, first + 2) = -distance_m;
     }
-    Eigen::Vector4d information = Eigen::Vector4d::Constant(1.0 / (noise_.stddev_m * noise_.stddev_m * distance_m));
-    information[3] = 1.0 / (noise_.stddev_rad * noise_.stddev_rad * distance_m);
+    const Eigen::Vector4d information = stepVariance(k, distance_m).cwiseMax(kLeastVariance).cwiseInverse();
     const Eigen::Matrix<double, kColumns, kColumns> JtWJ = J.transpose() * information.asDiagonal() * J;
     for (int a = 0; a < kColumns; ++a) {
       for (int b = 0; b < kColumns; ++b) {
         if (index[a] >= index[b]) all.matrix(index[a], index[b]) += JtWJ(a, b);
       }
     }
+  }
+
+  /// Of x, y, z and heading.
+  Eigen::Vector4d stepVariance(int k, double distance_m) const {
+    const Pose& from = stretch_.T_stretch_base[static_cast<std::size_t>(k)];
+    const Pose& to = stretch_.T_stretch_base[static_cast<std::size_t>(k) + 1];
+    const double turn_rad = motionOf(from.inverse() * to).turn_rad;
+    const MotionVariance variance = varianceOf(noise_.odometry, {distance_m, turn_rad});
+    const double planar_m2 = std::max(variance.along_m2, variance.across_m2);
+    return {planar_m2, planar_m2, variance.up_m2, variance.heading_rad2};
   }
 
   static void reweigh(std::vector<Row>& rows, const Eigen::VectorXd& x) {

@@ -35,8 +35,7 @@ BiasBasis biasBasis(double range_m);
 
 /// What the equations of a stretch know of the odometry.
 struct BiasMotionNoise {
-  double stddev_m = 0.03;             ///< per square root of a metre
-  double stddev_rad = 0.0007;         ///< per square root of a metre
+  OdometryNoise odometry;
   double scale_change_stddev = 0.01;  ///< of scale, direction and slope, between stretches
   int min_observations = 4;
 };

@@ -88,11 +88,10 @@ void CentroidBias::forget() {
   solve();
 }
 
-void CentroidBias::add(const BiasStretch& stretch, double odometry_stddev_m, double odometry_stddev_rad) {
+void CentroidBias::add(const BiasStretch& stretch, const OdometryNoise& odometry) {
   if (!config_.enabled || stretch.T_stretch_base.size() < 2) return;
   const BiasLayout layout{biased_count_};
-  const BiasMotionNoise noise{std::max(odometry_stddev_m, 1e-3), std::max(odometry_stddev_rad, 1e-5),
-                              config_.scale_change_stddev, config_.min_observations};
+  const BiasMotionNoise noise{odometry, config_.scale_change_stddev, config_.min_observations};
   BiasStretch used{stretch.T_stretch_base, {}};
   for (const BiasObservation& observation : stretch.observations) {
     const int place = place_[static_cast<std::size_t>(observation.class_index)];

@@ -108,8 +108,8 @@ std::vector<double> DetectorCalibration::reaches() const {
   std::vector<double> reaches_m;
   for (std::size_t c = 0; c < statistics_.size(); ++c) {
     const double stddev_m = noiseStddev(static_cast<ClassIndex>(c), kMiddleRange_m).head<2>().maxCoeff();
-    reaches_m.push_back(std::clamp(kReachSigmas * std::sqrt(2.0) * stddev_m, config_.max_distance_m,
-                                   kLargestReach * config_.max_distance_m));
+    reaches_m.push_back(std::clamp<double>(kReachSigmas * std::sqrt(2.0) * stddev_m, config_.max_distance_m,
+                                           kLargestReach * config_.max_distance_m));
   }
   return reaches_m;
 }

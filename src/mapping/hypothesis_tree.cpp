@@ -47,11 +47,6 @@ void MultiHypothesisTree::step(const TreeInput& input, Rng& rng) {
   pruneHypotheses(config_, leaves_, rng);
 }
 
-void MultiHypothesisTree::predict(MapHypothesis& hypothesis, const TreeInput& input) const {
-  const SubmapConfig& submap = config_.submap;
-  hypothesis.offset = grown(hypothesis.offset, input.step_m, submap.odometry_stddev_m, submap.odometry_stddev_rad);
-}
-
 void MultiHypothesisTree::measureFrom(const Pose& T_submap_base, const PoseOffset* offset, const TreeInput& input,
                                       std::vector<Measurement>& measurements) const {
   const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
@@ -95,7 +90,7 @@ void MultiHypothesisTree::expand(std::size_t leaf, const TreeInput& input,
                                  std::vector<FrameInterpretation>& interpretations) {
   MapHypothesis& parent = leaves_[leaf];
   LeafExpansion& expansion = expansions_[leaf];
-  predict(parent, input);
+  parent.offset = grown(parent.offset, input.T_submap_last, input.T_submap_base, input.odometry);
   measureFrom(corrected(input.T_submap_base, parent.offset), &parent.offset, input, expansion.measurements);
   model_.formulate(parent, expansion.measurements, input.driven_m, expansion.problem);
   tracking_.lookOut(parent, input, expansion.outlooks);

@@ -72,8 +72,8 @@ void LandmarkPropagation::propagate(const Pose& T_new_old) {
   for (HypothesisLandmark& landmark : landmarks_) {
     auto moved = std::make_shared<TrackedLandmark>(*landmark);
     moved->position.mean_m = T_new_old * landmark->position.mean_m;
-    const Eigen::Matrix3d cov = R * landmark->position.cov_m2 * R.transpose();
-    moved->position.cov_m2 = cov + pointCov(last_offset_, moved->position.mean_m);
+    const Eigen::Matrix3d of_pose_m2 = pointCov(last_offset_, R.transpose() * moved->position.mean_m);
+    moved->position.cov_m2 = R * (landmark->position.cov_m2 + of_pose_m2) * R.transpose();
     moved->is_from_earlier_submap = true;
     landmark.tracked = std::move(moved);
   }

@@ -18,10 +18,11 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kGateMahalanobisSq = 11.3;
-constexpr double kMaxGate_m = 4.0;
+constexpr double kMaxGate = 1.0 / 15.0;  // of the radius
 constexpr double kHuberSigma = 2.0;
-constexpr double kMaxWithheld = 3.0;                 // nats of the evidence that the first look held back, at the end
-constexpr double kFinal_m = 0.5, kFinal_rad = 0.02;  // prior of the last refinement, around the hypothesis's offset
+constexpr double kMaxWithheld = 3.0;    // nats of the evidence that the first look held back, at the end
+constexpr double kFinal = 1.0 / 120.0;  // of the radius: prior of the last refinement, around the hypothesis's offset
+constexpr double kFinal_rad = 0.02;
 
 PoseOffset offsetOf(const RegistrationMode& mode) {
   const Eigen::Matrix3d R = mode.T_a_b.rotation.toRotationMatrix();
@@ -61,7 +62,7 @@ std::vector<RegistrationMode> MapBranching::modesOf(const std::vector<const Trac
     ids.push_back(landmark->id);
     box.extend(prior.T_a_b * landmark->position.mean_m);
   }
-  const double window_m = std::min(registration_.max_window_m, registration_.window_sigmas * prior.stddev_xy_m);
+  const double window_m = std::min<double>(registration_.max_window_m, registration_.window_sigmas * prior.stddev_xy_m);
   const double turn_m = registration_.window_sigmas * prior.stddev_yaw_rad * config_.radius_m;
   std::vector<RegistrationPoint> earlier;
   earlier_of_point_.clear();
@@ -168,16 +169,17 @@ void MapBranching::matchTheRest(const MapHypothesis& leaf, const EarlierMapPlace
     if (is_taken[k] == 0) free.push_back({placement.mean_m(i), i, map_.landmarks[k].mostLikelyClass()});
   }
   std::sort(free.begin(), free.end(), [](const Free& a, const Free& b) { return a.mean_m.x() < b.mean_m.x(); });
+  const double max_gate_m = kMaxGate * config_.radius_m;
   std::vector<std::tuple<double, LandmarkId, int>> pairs;
   for (const HypothesisLandmark& landmark : leaf.landmarks) {
     if (landmark->is_expected || matches.count(landmark->id) > 0) continue;
     const Eigen::Vector3d& mean_m = landmark->position.mean_m;
     const ClassIndex class_index = landmark->mostLikelyClass();
-    auto near = std::lower_bound(free.begin(), free.end(), mean_m.x() - kMaxGate_m,
+    auto near = std::lower_bound(free.begin(), free.end(), mean_m.x() - max_gate_m,
                                  [](const Free& known, double x_m) { return known.mean_m.x() < x_m; });
-    for (; near != free.end() && near->mean_m.x() <= mean_m.x() + kMaxGate_m; ++near) {
+    for (; near != free.end() && near->mean_m.x() <= mean_m.x() + max_gate_m; ++near) {
       const Eigen::Vector3d d = near->mean_m - mean_m;
-      if (near->class_index != class_index || d.head<2>().squaredNorm() > kMaxGate_m * kMaxGate_m) continue;
+      if (near->class_index != class_index || d.head<2>().squaredNorm() > max_gate_m * max_gate_m) continue;
       const Eigen::Matrix3d cov_m2 = placement.cov_m2(near->earlier) + landmark->position.cov_m2;
       const auto fit = evaluate({Eigen::Vector3d::Zero(), cov_m2}, d);
       if (!fit || fit->mahalanobis_sq >= kGateMahalanobisSq) continue;
@@ -245,7 +247,8 @@ std::optional<MapAlignment> MapBranching::conclude(const std::vector<MapHypothes
   alignment.T_earlier_submap = poseOf(*best->map_offset);
   alignment.cov = stepCov(*best->map_offset, registration_.tilt_stddev_rad);
   alignment.weight = agreeingWeight(leaves, *best->map_offset, 0.0);
-  const RegistrationPrior prior{alignment.T_earlier_submap, kFinal_m, kFinal_m, kFinal_rad};
+  const RegistrationPrior prior{alignment.T_earlier_submap, kFinal * config_.radius_m, kFinal * config_.radius_m,
+                                kFinal_rad};
   std::vector<LandmarkId> ids;
   const auto modes = modesOf(mostSeenLandmarks(*best, 2 * config_.max_landmarks), prior, ids);
   if (modes.empty()) return alignment;

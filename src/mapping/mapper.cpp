@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kCertainExistence = 0.95;  // of landmarks that tell how often what exists is detected
 constexpr double kCertainClass = 0.99;      // of landmarks that tell what a class is taken for
-constexpr double kFrameSpacing_m = 2.0;     // nearer ones see the same error of a centroid
 
 /// Deviations along a ray, across it in the plane and vertically.
 Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& ray_m) {
@@ -55,6 +54,7 @@ Mapper::Mapper(const MapperConfig& config, const ClassTable& classes, const Regi
       classes_(classes),
       calibration_(config.calibration, classes),
       bias_(config.bias, classes),
+      odometry_(config.odometry),
       tree_(config, classes, registration),
       propagation_(config) {}
 
@@ -86,8 +86,9 @@ Measurement Mapper::makeMeasurement(const Detection& detection) {
   measurement.ray_m = measurement.position_m;
   measurement.noise_stddev_m = alongRay(measurement.cov_m2, measurement.ray_m);
   const AssociationConfig& association = config_.association;
-  const double stddev_m = std::max(association.outlier_min_stddev_m,
-                                   association.outlier_factor * std::sqrt(measurement.cov_m2.diagonal().maxCoeff()));
+  const double stddev_m =
+      std::max<double>(association.outlier_min_stddev_m,
+                       association.outlier_factor * std::sqrt(measurement.cov_m2.diagonal().maxCoeff()));
   measurement.outlier_variance_m2 = Eigen::Vector3d::Constant(stddev_m * stddev_m);
   measurement.wander_variance_per_m = calibration_.wanderVariancePerMetre(detection.class_index);
   measurement.class_index = detection.class_index;
@@ -106,7 +107,7 @@ std::shared_ptr<const std::vector<ClassNoise>> Mapper::noiseOfClasses(double ran
   for (ClassIndex i = 0; i < classes_.size(); ++i) {
     const Eigen::Vector3d stddev_m = calibration_.noiseStddev(i, range_m);
     const double outlier_m =
-        std::max(association.outlier_min_stddev_m, association.outlier_factor * stddev_m.maxCoeff());
+        std::max<double>(association.outlier_min_stddev_m, association.outlier_factor * stddev_m.maxCoeff());
     noise->push_back({stddev_m, outlier_m * outlier_m, calibration_.wanderVariancePerMetre(i)});
   }
   known = noise;
@@ -136,19 +137,14 @@ void Mapper::learnConfusion(const std::vector<FusedAssociations>& associations,
   }
 }
 
-bool Mapper::isFullAt(const Pose& T_odom_base) const {
-  if (frames_.empty()) return false;
-  const double step_m = (T_odom_base.translation_m - frames_.back().T_odom_base.translation_m).norm();
-  return length_m_ + step_m >= config_.submap.length_m;
-}
-
 void Mapper::begin(const Pose& T_odom_submap, EarlierMap earlier_map) {
   if (is_open_) throw std::logic_error("Mapper: a submap begins in another one");
   id_ = id_.isNone() ? SubmapId(0) : SubmapId(id_.index() + 1);
   is_open_ = true;
-  length_m_ = 0.0;
+  motion_ = {};
   frames_.clear();
   spaced_.clear();
+  stations_.clear();
   T_odom_submap_ = T_odom_submap;
   if (!config_.alignment.enabled) earlier_map = {};
   tree_.restart(propagation_.beginSubmap(id_, T_odom_submap_), std::move(earlier_map));
@@ -157,14 +153,13 @@ void Mapper::begin(const Pose& T_odom_submap, EarlierMap earlier_map) {
 void Mapper::add(Frame frame, Rng& rng) {
   if (!is_open_) throw std::logic_error("Mapper: a frame between submaps");
   TreeInput input;
-  if (!frames_.empty()) {
-    input.step_m = (frame.T_odom_base.translation_m - frames_.back().T_odom_base.translation_m).norm();
-  }
-  length_m_ += input.step_m;
+  motion_ = motionWith(frame.T_odom_base);
   input.frame = frame.index;
   input.submap = id_;
-  input.driven_m = length_m_;
+  input.driven_m = motion_.way_m;
+  input.T_submap_last = T_submap_base(frames_.empty() ? frame : frames_.back());
   input.T_submap_base = T_submap_base(frame);
+  input.odometry = odometry_.model();
   calibration_.add(frame.T_odom_base, frame.detections);
   noise_of_class_ = {};
   for (const Detection& detection : frame.detections) {
@@ -172,9 +167,10 @@ void Mapper::add(Frame frame, Rng& rng) {
     input.measurements.back().id_if_new = next_landmark_++;
   }
   const auto is_far = [&](const Frame& other) {
-    return (frame.T_odom_base.translation_m - other.T_odom_base.translation_m).norm() >= kFrameSpacing_m;
+    return (frame.T_odom_base.translation_m - other.T_odom_base.translation_m).norm() >= frameSpacing_m();
   };
   if (spaced_.empty() || is_far(frames_[spaced_.back()])) spaced_.push_back(frames_.size());
+  stations_.add(frames_.size(), input.T_submap_base, motion_, frame.detections, stationSpacing_m());
   frames_.push_back(std::move(frame));
   tree_.step(input, rng);
 }
@@ -215,18 +211,19 @@ BiasStretch Mapper::biasStretch(const std::vector<FusedAssociations>& associatio
       if (landmarks[i] == kNoLandmark) continue;
       const Detection& detection = detections[i];
       Eigen::Matrix3d cov = detectorCov(detection);
-      cov.diagonal().head<2>().array() += kFrameSpacing_m * calibration_.wanderVariancePerMetre(detection.class_index);
+      cov.diagonal().head<2>().array() += frameSpacing_m() * calibration_.wanderVariancePerMetre(detection.class_index);
       stretch.observations.push_back({index, detection.position_m, cov, detection.class_index, landmarks[i]});
     }
   }
   return stretch;
 }
 
-/// What a submap teaches about the detector.
+/// What a submap teaches about the detector and the odometry.
 void Mapper::learn(const std::vector<FusedAssociations>& associations, const std::vector<MixtureLandmark>& landmarks) {
   if (config_.bias.enabled) {
-    bias_.add(biasStretch(associations), config_.submap.odometry_stddev_m, config_.submap.odometry_stddev_rad);
+    bias_.add(biasStretch(associations), odometry_.model().noise);
   }
+  learnOdometry(associations);
   learnDetectionRate(associations, landmarks);
   if (learnsConfusion()) learnConfusion(associations, landmarks);
 }

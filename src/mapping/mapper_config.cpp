@@ -57,11 +57,9 @@ void describe(TreeConfig& config, Fields& fields) {
 }
 
 void describe(SubmapConfig& config, Fields& fields) {
-  fields.add("length", config.length_m, "m", {1.0, 1000.0}, "Travelled length of a submap.");
-  fields.add("odometry_stddev", config.odometry_stddev_m, "m/sqrt(m)", {1e-4, 10.0},
-             "Growth of the odometry's position error with the square root of the distance.");
-  fields.add("odometry_stddev_rad", config.odometry_stddev_rad, "rad/sqrt(m)", {1e-6, 1.0},
-             "Growth of the odometry's heading error with the square root of the distance.");
+  fields.add("length", config.length_m, "m", {1.0, 1000.0}, "Travelled length of a submap,");
+  fields.add("turn", config.turn_rad, "rad", {0.1, 1000.0}, "unless it turned so much in it,");
+  fields.add("max_frames", config.max_frames, "frames", {10, 1000000}, "or has so many frames.");
   fields.add("correct_pose", config.correct_pose,
              "Whether each hypothesis corrects the odometry within the submap by its landmarks (the paper: false).");
   fields.add("propagation", config.propagation_m, "m", {0.0, 10000.0},
@@ -97,6 +95,7 @@ void describe(MapperConfig& config, Fields& fields) {
   describe(config.association, fields);
   fields.group("detection", config.detection);
   fields.group("submap", config.submap);
+  fields.group("odometry", config.odometry);
   fields.group("calibration", config.calibration);
   fields.group("bias", config.bias);
   fields.group("alignment", config.alignment);

@@ -110,9 +110,49 @@ void LandmarkPropagation::transfer(StateArchive& archive) {
   transferLandmarks(archive, resting_);
 }
 
+void ErrorInformation::transfer(StateArchive& archive) {
+  archive(matrix, vector, design, effect);
+  const Eigen::Index size = vector.size();
+  if (matrix.rows() != size || matrix.cols() != size || design.rows() != size || effect.rows() != size) {
+    StateArchive::fail("errors of the odometry whose sizes do not fit");
+  }
+}
+
+void VarianceComponents::transfer(StateArchive& archive) {
+  const Eigen::Index parts = prior_mean_.size();
+  const Eigen::Index effects = effect_.size();
+  archive(prior_mean_, prior_precision_, effect_information_, effect_vector_, stretches_);
+  archive(log_variance_, log_uncertainty_, effect_, effect_cov_);
+  bool fits = prior_mean_.size() == parts && prior_precision_.rows() == parts && prior_precision_.cols() == parts &&
+              log_variance_.size() == parts && log_uncertainty_.size() == parts && log_variance_.allFinite() &&
+              effect_.size() == effects && effect_vector_.size() == effects && effect_information_.rows() == effects &&
+              effect_information_.cols() == effects && effect_cov_.rows() == effects && effect_cov_.cols() == effects;
+  for (const ErrorInformation& stretch : stretches_) {
+    fits = fits && stretch.design.cols() == parts && stretch.effect.cols() == effects;
+  }
+  if (!fits) StateArchive::fail("errors of the odometry in other parts");
+}
+
+void OdometryLearning::transfer(StateArchive& archive) {
+  archive(planar_, vertical_);
+  if (archive.isReading() && config_.learn) readOff();
+}
+
+void StationKeeping::Seen::transfer(StateArchive& archive) {
+  archive(place, measurement, T_station_base, detection);
+}
+
+void StationKeeping::Station::transfer(StateArchive& archive) {
+  archive(T_submap_base, motion, seen);
+}
+
+void StationKeeping::transfer(StateArchive& archive) {
+  archive(stations_);
+}
+
 void Mapper::transfer(StateArchive& archive) {
-  archive(calibration_, bias_, tree_);
-  archive(next_landmark_, id_, is_open_, T_odom_submap_, length_m_, frames_, spaced_, propagation_);
+  archive(calibration_, bias_, odometry_, tree_);
+  archive(next_landmark_, id_, is_open_, T_odom_submap_, motion_, frames_, spaced_, stations_, propagation_);
   for (const std::size_t k : spaced_) {
     if (k >= frames_.size()) StateArchive::fail("a number names no frame of the open submap");
   }

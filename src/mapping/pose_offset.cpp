@@ -45,10 +45,26 @@ Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_
   return offset.cov.topLeftCorner<3, 3>() + cross + cross.transpose() + offset.cov(3, 3) * turn * turn.transpose();
 }
 
-PoseOffset grown(const PoseOffset& offset, double distance_m, double stddev_m, double stddev_rad) {
+PoseOffset grown(const PoseOffset& offset, const Pose& T_submap_last, const Pose& T_submap_base,
+                 const OdometryModel& odometry) {
+  const Pose step = T_submap_last.inverse() * T_submap_base;
+  const Pose expected = expectedStep(odometry, step);
+  const Eigen::Matrix3d turn = expRotation({0.0, 0.0, offset.mean[3]}).toRotationMatrix();
+  const Eigen::Matrix3d R = turn * T_submap_last.rotation.toRotationMatrix();
+  const Eigen::Vector3d driven_m = R * expected.translation_m;
   PoseOffset result = offset;
-  result.cov.diagonal().head<3>().array() += stddev_m * stddev_m * distance_m;
-  result.cov(3, 3) += stddev_rad * stddev_rad * distance_m;
+  result.mean.head<3>() += driven_m - (T_submap_base.translation_m - T_submap_last.translation_m);
+  result.mean[3] += headingOf(step.rotation.conjugate() * expected.rotation);
+  Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
+  F.col(3).head<2>() << -driven_m.y(), driven_m.x();
+  result.cov = F * offset.cov * F.transpose();
+  const MotionVariance noise = varianceOf(odometry, motionOf(step));
+  const Eigen::Vector3d along = driven_m.squaredNorm() > 0.0 ? Eigen::Vector3d(driven_m.normalized()) : R.col(0);
+  Eigen::Matrix2d cov_m2 = noise.across_m2 * Eigen::Matrix2d::Identity();
+  cov_m2 += (noise.along_m2 - noise.across_m2) * along.head<2>() * along.head<2>().transpose();
+  result.cov.topLeftCorner<2, 2>() += cov_m2;
+  result.cov(2, 2) += noise.up_m2;
+  result.cov(3, 3) += noise.heading_rad2;
   return result;
 }
 

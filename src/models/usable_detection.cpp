@@ -9,9 +9,18 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kFarthest_m = 1e5;  // beyond what any sensor sees
+constexpr double kFarthest_m = 1e5;    // beyond what any sensor sees
+constexpr double kLeastRange_m = 1.0;  // a deviation below which says something of any detection
 constexpr double kLeastVariance_m2 = 1e-12;
 constexpr double kLeastVarianceRatio = 1e-12;  // below it rounding alone decides whether a matrix is singular
+
+template <class Predicate>
+std::size_t removeIf(Detections& detections, const Predicate& isUnwanted) {
+  const auto unwanted = std::remove_if(detections.begin(), detections.end(), isUnwanted);
+  const auto count = static_cast<std::size_t>(detections.end() - unwanted);
+  detections.erase(unwanted, detections.end());
+  return count;
+}
 
 bool isUsableCov(const Eigen::Matrix3d& cov_m2) {
   if (!isCovariance(cov_m2)) return false;
@@ -32,12 +41,25 @@ bool isUsable(const Detection& detection) {
   return !detection.cov_m2 || isUsableCov(*detection.cov_m2);
 }
 
-std::size_t removeUnusable(Detections& detections) {
-  const auto unusable =
-      std::remove_if(detections.begin(), detections.end(), [](const Detection& d) { return !isUsable(d); });
-  const auto count = static_cast<std::size_t>(detections.end() - unusable);
-  detections.erase(unusable, detections.end());
+std::size_t removeAtOrigin(Detections& detections) {
+  return removeIf(detections, [](const Detection& d) { return d.position_m.isZero(0.0); });
+}
+
+std::size_t forgetUnknownCovariances(Detections& detections) {
+  std::size_t count = 0;
+  for (Detection& detection : detections) {
+    if (!detection.cov_m2 || !detection.cov_m2->allFinite()) continue;
+    const double range_m = std::max(detection.position_m.norm(), kLeastRange_m);
+    const Eigen::Vector3d variance_m2 = detection.cov_m2->diagonal();
+    if (variance_m2.minCoeff() > 0.0 && variance_m2.maxCoeff() <= range_m * range_m) continue;
+    detection.cov_m2.reset();
+    ++count;
+  }
   return count;
+}
+
+std::size_t removeUnusable(Detections& detections) {
+  return removeIf(detections, [](const Detection& d) { return !isUsable(d); });
 }
 
 }  // namespace semantic_mht_slam

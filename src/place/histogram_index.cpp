@@ -194,7 +194,7 @@ struct HistogramIndex::Implementation {
 
 HistogramIndex::HistogramIndex(HistogramMetric metric, int classes) {
   if (classes < 1 || classes > kMaxClasses) throw std::invalid_argument("an index without or with too many classes");
-  implementation_ = std::make_unique<Implementation>(metric, static_cast<std::size_t>(classes));
+  implementation_ = std::make_unique<Implementation>(metric, classes);
 }
 
 HistogramIndex::~HistogramIndex() = default;

@@ -71,9 +71,9 @@ std::vector<PaperCandidate> PaperChain::scoreScenesOf(const PlacesOfSubmap& subm
                                                       const Keyframe& keyframe,
                                                       const Eigen::MatrixXd& laplacian) const {
   const double latest_m = keyframe.driven_m - config_.recent_m;
-  const auto scenes = submap.scenes.nearest(
-      classHistogram(keyframe.scene, classes_), static_cast<std::size_t>(config_.scenes_per_submap),
-      config_.max_scene_distance, [&](std::size_t i) { return submap.places[i].driven_m <= latest_m; });
+  const auto scenes = submap.scenes.nearest(classHistogram(keyframe.scene, classes_), config_.scenes_per_submap,
+                                            config_.max_scene_distance,
+                                            [&](std::size_t i) { return submap.places[i].driven_m <= latest_m; });
   std::vector<PaperCandidate> candidates;
   for (const HistogramMatch& scene : scenes) {
     candidates.push_back(scorePair(submap.places[scene.index], keyframe, laplacian));
@@ -93,9 +93,8 @@ std::vector<PaperCandidate> PaperChain::query(const Keyframe& keyframe, const Cl
     });
     return own != places.end() ? own->laplacian : laplacianOf(keyframe.scene);
   };
-  const auto similar =
-      submap_index_.nearest(submap_histogram, static_cast<std::size_t>(config_.similar_submaps), config_.max_divergence,
-                            [&](std::size_t i) { return submaps_[i].begin_m <= latest_m; });
+  const auto similar = submap_index_.nearest(submap_histogram, config_.similar_submaps, config_.max_divergence,
+                                             [&](std::size_t i) { return submaps_[i].begin_m <= latest_m; });
   const Eigen::MatrixXd laplacian = laplacianOfQuery();
   std::vector<PaperCandidate> candidates;
   for (const HistogramMatch& match : similar) {

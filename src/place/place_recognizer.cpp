@@ -38,6 +38,7 @@ PaperChainConfig paperConfig(const PlaceConfig& config) {
 PlaceRecognizer::PlaceRecognizer(const PlaceConfig& config, const ClassTable& classes,
                                  const RegistrationConfig& registration)
     : config_(config), classes_(classes), registration_(registration) {
+  config_.min_classes = std::min(config.min_classes, classes.size());
   if (config.chain == PlaceChain::kPaper) paper_.emplace(paperConfig(config), classes.size());
 }
 

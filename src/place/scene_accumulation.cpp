@@ -12,7 +12,6 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kMergeSigmas = 2.5;
-constexpr double kMinMergeRadius_m = 0.8;
 constexpr std::size_t kLongWindow = 5;  // frames
 
 Eigen::Matrix3d classCov(const Eigen::Vector3d& position_m, const ClassInfo& info) {
@@ -34,9 +33,9 @@ struct Cluster {
   }
 };
 
-Cluster* nearestCluster(std::vector<Cluster>& clusters, const SceneObject& seen) {
+Cluster* nearestCluster(std::vector<Cluster>& clusters, const SceneObject& seen, double min_merge_radius_m) {
   Cluster* nearest = nullptr;
-  double best_m = std::max(kMinMergeRadius_m, kMergeSigmas * std::sqrt(seen.cov_m2.trace() / 3.0));
+  double best_m = std::max(min_merge_radius_m, kMergeSigmas * std::sqrt(seen.cov_m2.trace() / 3.0));
   for (Cluster& cluster : clusters) {
     if (cluster.object.class_index != seen.class_index) continue;
     const double distance_m = (cluster.object.position_m - seen.position_m).head<2>().norm();
@@ -65,7 +64,7 @@ Scene sceneOfFrame(const Detections& detections, const ClassTable& classes) {
 }
 
 Scene accumulateScene(const std::vector<Detections>& frames, const std::vector<Pose>& T_base_frame,
-                      const ClassTable& classes) {
+                      const ClassTable& classes, double min_merge_radius_m) {
   if (frames.size() != T_base_frame.size()) throw std::invalid_argument("accumulateScene: a pose a frame is needed");
   std::vector<Cluster> clusters;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -74,7 +73,7 @@ Scene accumulateScene(const std::vector<Detections>& frames, const std::vector<P
       seen.position_m = T_base_frame[i] * seen.position_m;
       seen.cov_m2 = rotation * seen.cov_m2 * rotation.transpose();
       seen.cov_m2 = symmetric(seen.cov_m2);
-      Cluster* cluster = nearestCluster(clusters, seen);
+      Cluster* cluster = nearestCluster(clusters, seen, min_merge_radius_m);
       if (cluster == nullptr) cluster = &clusters.emplace_back(Cluster{seen, 0});
       cluster->add(seen);
     }

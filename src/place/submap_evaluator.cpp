@@ -21,7 +21,8 @@ SubmapEvaluation SubmapEvaluator::add(const Submap& submap) {
 }
 
 SubmapEvaluator makeSubmapEvaluator(const SubmapEvaluatorConfig& config, const std::string& tree_path, int classes) {
-  if (config.check_all) return SubmapEvaluator(classes);
+  const bool says_nothing = classes == 1;  // tf-idf is the same of all submaps
+  if (config.check_all || says_nothing) return SubmapEvaluator(classes);
   return SubmapEvaluator(classes, SubmapClassifier::load(tree_path));
 }
 

@@ -25,7 +25,7 @@ std::optional<double> mixtureEntropy(const std::vector<MixtureLandmark>& landmar
 
 SubmapFeatureExtractor::SubmapFeatureExtractor(int classes) : classes_(classes) {
   if (classes < 1 || classes > kMaxClasses) throw std::invalid_argument("features without or with too many classes");
-  submaps_with_class_.assign(static_cast<std::size_t>(classes), 0);
+  submaps_with_class_.assign(classes, 0);
 }
 
 double SubmapFeatureExtractor::tfIdf(const ClassHistogram& histogram) const {

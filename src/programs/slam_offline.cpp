@@ -90,6 +90,17 @@ Recording loadRecording(const Arguments& arguments, const ClassTable& classes, c
   return toRecording(readDataset(arguments.dataset, classes));
 }
 
+/// What has to be said of the odometry's beginnings; empty if there is one, in its place.
+std::string describeSessions(const std::vector<SessionSummary>& sessions) {
+  std::string text;
+  if (sessions.size() > 1) text += "; " + std::to_string(sessions.size()) + " sessions";
+  for (std::size_t s = 0; s < sessions.size(); ++s) {
+    if (sessions[s].is_located) continue;
+    text += "; session " + std::to_string(s + 1) + " was never found in the map: its trajectory is the odometry's";
+  }
+  return text;
+}
+
 void printSummary(const RunResult& result, const std::optional<TrajectoryError>& error, const std::string& output) {
   std::printf("%zu frames in %.2f s", result.trajectory.size(), result.seconds);
   if (error) {
@@ -100,7 +111,13 @@ void printSummary(const RunResult& result, const std::optional<TrajectoryError>&
   if (const std::size_t unusable = result.counters.detections_invalid) {
     std::printf("; %zu detections dropped, their numbers cannot be used", unusable);
   }
-  std::printf("; results in %s\n", output.c_str());
+  if (const std::size_t at_origin = result.counters.detections_at_origin) {
+    std::printf("; %zu detections dropped, they lie at exactly 0, 0, 0", at_origin);
+  }
+  if (const std::size_t unknown = result.counters.covariances_unknown) {
+    std::printf("; %zu covariances left out, they say that nothing is known", unknown);
+  }
+  std::printf("%s; results in %s\n", describeSessions(result.sessions).c_str(), output.c_str());
 }
 
 int run(int argc, char** argv) {

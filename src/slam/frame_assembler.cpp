@@ -65,6 +65,8 @@ void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
     return;
   }
   last_frame_ = stamp;
+  counters_.covariances_unknown += forgetUnknownCovariances(detections);
+  counters_.detections_at_origin += removeAtOrigin(detections);
   counters_.detections_invalid += removeUnusable(detections);
   waiting_.push_back({index, stamp, std::move(detections)});
   if (static_cast<int>(waiting_.size()) > config_.max_waiting_frames) {

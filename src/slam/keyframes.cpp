@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/slam/keyframes.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -44,19 +45,18 @@ class KeptLandmarks {
 /// Collects what one keyframe sees.
 class SightingCollector {
  public:
-  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const OdometryNoise& odometry,
+  SightingCollector(const Pose& T_odom_keyframe, const Pose& T_odom_submap, const OdometryModel& odometry,
                     const KeyframeConfig& config)
       : T_keyframe_odom_(T_odom_keyframe.inverse()),
         T_keyframe_submap_(T_keyframe_odom_ * T_odom_submap),
         odometry_(odometry),
         config_(config) {}
 
-  void add(const MixtureLandmark& landmark, const Pose& T_odom_base, double distance_m, const Detection& detection) {
-    const Pose T_keyframe_base = T_keyframe_odom_ * T_odom_base;
+  void add(const MixtureLandmark& landmark, const Pose& T_odom_base, const Motion& motion, const Detection& detection) {
+    const Pose T_keyframe_base = expectedStep(odometry_, T_keyframe_odom_ * T_odom_base);
     const Eigen::Matrix3d R = T_keyframe_base.rotation.toRotationMatrix();
-    const double lever_m = detection.position_m.norm() * odometry_.stddev_rad;
-    const double drift_m2 = distance_m * (odometry_.stddev_m * odometry_.stddev_m + lever_m * lever_m);
-    const Eigen::Matrix3d cov = R * detection.cov_m2.value() * R.transpose() + drift_m2 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d cov = R * detection.cov_m2.value() * R.transpose() +
+                                driftOf(motion, T_keyframe_base.translation_m, R * detection.position_m);
     const Eigen::Matrix3d information = cov.inverse();
     WeightedSum& sum = sums_[landmark.id];
     sum.landmark = &landmark;
@@ -81,9 +81,21 @@ class SightingCollector {
   }
 
  private:
+  /// Covariance of what the odometry is off by at a place `lever_m` from the base, keyframe's axes.
+  Eigen::Matrix3d driftOf(const Motion& motion, const Eigen::Vector3d& way_m, const Eigen::Vector3d& lever_m) const {
+    const MotionVariance variance = varianceOf(odometry_, motion);
+    const double planar_m2 = std::max(variance.along_m2, variance.across_m2);
+    Eigen::Matrix3d cov = Eigen::Vector3d(planar_m2, planar_m2, variance.up_m2).asDiagonal();
+    const Eigen::Vector3d reach_m = lever_m + 0.5 * way_m;
+    const Eigen::Vector3d turned(-reach_m.y(), reach_m.x(), 0.0);
+    cov += variance.heading_rad2 * turned * turned.transpose();
+    cov(2, 2) += variance.tilt_rad2 * reach_m.head<2>().squaredNorm();
+    return cov;
+  }
+
   Pose T_keyframe_odom_;
   Pose T_keyframe_submap_;
-  const OdometryNoise& odometry_;
+  const OdometryModel& odometry_;
   const KeyframeConfig& config_;
   std::map<LandmarkId, WeightedSum> sums_;
 };
@@ -98,25 +110,25 @@ void describe(KeyframeConfig& config, Fields& fields) {
              "The same for its height: of trunks and poles a sensor sees another part from each distance.");
 }
 
-CutSubmap cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, double driven_m, double keep_prob,
-                           const OdometryNoise& odometry, const KeyframeConfig& config) {
+CutSubmap cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frames, Motion driven, double keep_prob,
+                           const OdometryModel& odometry, const KeyframeConfig& config) {
   const KeptLandmarks landmarks(submap, keep_prob);
   CutSubmap cut;
   std::optional<SightingCollector> collector;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const Frame& frame = frames[i];
-    if (i > 0) driven_m += (frame.T_odom_base.translation_m - frames[i - 1].T_odom_base.translation_m).norm();
-    if (cut.keyframes.empty() || driven_m - cut.keyframes.back().driven_m >= config.spacing_m) {
+    if (i > 0) driven = driven + motionOf(frames[i - 1].T_odom_base.inverse() * frame.T_odom_base);
+    if (cut.keyframes.empty() || driven.way_m - cut.keyframes.back().driven_m >= config.spacing_m) {
       if (collector) collector->writeTo(cut);
-      cut.keyframes.push_back({frame.index, submap.id, driven_m, {}, frame.stamp, frame.T_odom_base});
+      cut.keyframes.push_back(
+          {frame.index, submap.id, driven.way_m, {}, frame.stamp, frame.T_odom_base, driven.turn_rad});
       cut.sightings.emplace_back();
       collector.emplace(frame.T_odom_base, submap.T_odom_submap, odometry, config);
     }
     for (const Detection& detection : frame.detections) {
       const MixtureLandmark* landmark = landmarks.of(frame.index, detection.row);
       if (landmark == nullptr) continue;
-      const double distance_m = driven_m - cut.keyframes.back().driven_m;
-      collector->add(*landmark, frame.T_odom_base, distance_m, detection);
+      collector->add(*landmark, frame.T_odom_base, driven - motionTo(cut.keyframes.back()), detection);
     }
   }
   if (collector) collector->writeTo(cut);

@@ -9,12 +9,6 @@ namespace {
 
 constexpr std::size_t kMinObjects = 6;
 
-/// After what distance a pose is uncertain by `stddev_m`.
-double driftOf(double stddev_m, const RevisitConfig& config) {
-  const double grown_m = std::max(0.0, stddev_m - config.base_stddev_m);
-  return config.drift_per_m > 0.0 ? grown_m / config.drift_per_m : 0.0;
-}
-
 }  // namespace
 
 void describe(LocalizerConfig& config, Fields& fields) {
@@ -27,6 +21,8 @@ void describe(LocalizerConfig& config, Fields& fields) {
              "Two finds that confirm each other are so far apart,");
   fields.add("max_apart", config.max_apart_m, "m", {1.0, 1000.0}, "and no further.");
   fields.add("lost_after", config.lost_after_m, "m", {1.0, 10000.0}, "Lost after this distance without a fix.");
+  fields.add("merge_radius", config.merge_radius_m, "m", {0.001, 100.0},
+             "Detections of the window are of one object if they stand no further apart, or as near as their noise.");
   fields.add("known_passes", config.known_passes, "", {0, 1000},
              "A place that was mapped so many times is known: while there, the vehicle localizes, and the map does not "
              "grow; 0: never.");
@@ -35,23 +31,23 @@ void describe(LocalizerConfig& config, Fields& fields) {
 void Localizer::expectAt(const Pose& T_map_odom, double stddev_m) {
   is_located_ = true;
   T_map_odom_ = T_map_odom;
-  fixed_m_ = driven_m_;
-  prior_drift_m_ = driftOf(stddev_m, revisit_config_);
+  fixed_ = driven_;
+  told_stddev_m_ = stddev_m;
 }
 
 bool Localizer::add(const Frame& frame, const Map& map, const LoopCloser& closer) {
   if (!window_.empty()) {
-    driven_m_ += (frame.T_odom_base.translation_m - window_.back().T_odom_base.translation_m).norm();
+    driven_ = driven_ + motionOf(window_.back().T_odom_base.inverse() * frame.T_odom_base);
   }
   window_.push_back(frame);
-  window_driven_m_.push_back(driven_m_);
-  while (driven_m_ - window_driven_m_.front() > config_.window_m) {
+  window_driven_m_.push_back(driven_.way_m);
+  while (driven_.way_m - window_driven_m_.front() > config_.window_m) {
     window_.pop_front();
     window_driven_m_.pop_front();
   }
-  if (driven_m_ - attempted_m_ < config_.step_m) return false;
-  attempted_m_ = driven_m_;
-  if (is_located_ && driven_m_ - fixed_m_ > config_.lost_after_m) is_located_ = false;
+  if (driven_.way_m - attempted_m_ < config_.step_m) return false;
+  attempted_m_ = driven_.way_m;
+  if (is_located_ && (driven_ - fixed_).way_m > config_.lost_after_m) is_located_ = false;
   const Scene seen = scene(closer.classes());
   if (seen.objects.size() < kMinObjects) return false;
   return is_located_ ? track(seen, map, closer) : search(seen, map, closer);
@@ -65,7 +61,7 @@ Scene Localizer::scene(const ClassTable& classes) const {
     frames.push_back(frame.detections);
     T_base_frame.push_back(T_base_odom * frame.T_odom_base);
   }
-  return accumulateScene(frames, T_base_frame, classes);
+  return accumulateScene(frames, T_base_frame, classes, config_.merge_radius_m);
 }
 
 bool Localizer::agree(const Find& a, const Find& b) const {
@@ -81,11 +77,11 @@ bool Localizer::agree(const Find& a, const Find& b) const {
 bool Localizer::search(const Scene& seen, const Map& map, const LoopCloser& closer) {
   const std::optional<Pose> T_map_base = closer.locate(map, seen);
   if (!T_map_base) return false;
-  const Find find{driven_m_, *T_map_base * window_.back().T_odom_base.inverse()};
+  const Find find{driven_.way_m, *T_map_base * window_.back().T_odom_base.inverse()};
   const bool is_confirmed =
       std::any_of(finds_.begin(), finds_.end(), [&](const Find& earlier) { return agree(earlier, find); });
   finds_.push_back(find);
-  while (driven_m_ - finds_.front().driven_m > config_.max_apart_m) finds_.pop_front();
+  while (driven_.way_m - finds_.front().driven_m > config_.max_apart_m) finds_.pop_front();
   if (!is_confirmed) return false;
   finds_.clear();
   is_located_ = true;
@@ -95,7 +91,7 @@ bool Localizer::search(const Scene& seen, const Map& map, const LoopCloser& clos
 
 bool Localizer::track(const Scene& seen, const Map& map, const LoopCloser& closer) {
   const Pose T_map_base = *T_map_odom_ * window_.back().T_odom_base;
-  const std::optional<Pose> found = closer.findNear(map, seen, T_map_base, driven_m_ - fixed_m_ + prior_drift_m_);
+  const std::optional<Pose> found = closer.findNear(map, seen, T_map_base, told_stddev_m_, driven_ - fixed_);
   if (!found) return false;
   settle(*found * window_.back().T_odom_base.inverse());
   return true;
@@ -104,8 +100,8 @@ bool Localizer::track(const Scene& seen, const Map& map, const LoopCloser& close
 void Localizer::settle(const Pose& T_map_odom) {
   const Frame& newest = window_.back();
   T_map_odom_ = T_map_odom;
-  fixed_m_ = driven_m_;
-  prior_drift_m_ = 0.0;
+  fixed_ = driven_;
+  told_stddev_m_ = 0.0;
   fix_ = MapFix{newest.stamp, newest.T_odom_base, T_map_odom * newest.T_odom_base};
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/slam/drift_prior.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -33,12 +34,14 @@ void transfer(StateArchive& archive, SubmapPrediction& prediction) {
   archive(T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad, T_map_keyframe);
 }
 
-LoopCloser::LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration)
+LoopCloser::LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration,
+                       double range_factor)
     : config_(config),
       classes_(classes),
       registration_(registration),
+      units_(range_factor),
       evaluator_(makeSubmapEvaluator(config.evaluator, config.evaluator.tree, classes.size())),
-      places_(config.place, classes, registration) {}
+      places_(config.place, classes, units_.toPlaces(registration)) {}
 
 std::vector<ClosureSource> LoopCloser::sources() const {
   if (!config_.close_loops) return {};
@@ -63,7 +66,7 @@ bool LoopCloser::isSearched(KeyframeId keyframe) const {
 
 std::vector<Pose> LoopCloser::placePoses(const Map& map) const {
   std::vector<Pose> poses;
-  for (const KeyframeId keyframe : keyframe_of_place_) poses.push_back(map.T_map_keyframe(keyframe));
+  for (const KeyframeId keyframe : keyframe_of_place_) poses.push_back(units_.toPlaces(map.T_map_keyframe(keyframe)));
   return poses;
 }
 
@@ -71,7 +74,7 @@ std::vector<LoopClosureRecord> LoopCloser::recognisePlaces(const Map& map, const
   std::vector<Keyframe> keyframes;
   for (const KeyframeId id : query.keyframes) {
     if (!isSearched(id)) continue;
-    keyframes.push_back(map.keyframes()[id]);
+    keyframes.push_back(units_.toPlaces(map.keyframes()[id]));
     keyframe_of_place_.push_back(id);
   }
   SubmapCheck& check = checks_.back();
@@ -79,13 +82,14 @@ std::vector<LoopClosureRecord> LoopCloser::recognisePlaces(const Map& map, const
   const SubmapSummary summary{classHistogram(map.submaps().back()->landmarks, classes_.size()), check.is_checked};
   std::vector<LoopClosureRecord> records;
   for (PlaceMatch& match : places_.process(std::move(keyframes), placePoses(map), summary)) {
-    records.push_back(toRecord(std::move(match), keyframe_of_place_));
+    records.push_back(toRecord(units_.fromPlaces(std::move(match)), keyframe_of_place_));
   }
   return records;
 }
 
-SubmapPrediction LoopCloser::predict(const Map& map, const Pose& T_map_submap, double drifted_m) const {
-  return {driftPrior(T_map_submap, drifted_m, config_.revisit), map.T_map_keyframes()};
+SubmapPrediction LoopCloser::predict(const Map& map, const Pose& T_map_submap, double tied_at_m,
+                                     const Motion& ahead) const {
+  return {driftPrior(map, tied_at_m, T_map_submap, ahead, odometry_, config_.revisit), map.T_map_keyframes()};
 }
 
 std::vector<LoopClosureRecord> LoopCloser::closeByHypotheses(const Map& map, const ClosureQuery& query) const {
@@ -122,8 +126,9 @@ std::vector<LoopClosureRecord> LoopCloser::revisits(const Map& map, const Closur
   std::vector<LoopClosureRecord> found;
   for (const KeyframeId keyframe : query.keyframes) {
     if (!isSearched(keyframe)) continue;
-    const double drifted_m = std::max(0.0, map.keyframes()[keyframe].driven_m - tied_at_m);
-    for (auto& record : findRevisits(map, keyframe, drifted_m, classes_, registration_, config_.revisit)) {
+    const RegistrationPrior prior =
+        driftPrior(map, tied_at_m, map.T_map_keyframe(keyframe), {}, odometry_, config_.revisit);
+    for (auto& record : findRevisits(map, keyframe, prior, classes_, registration_, config_.revisit)) {
       found.push_back(std::move(record));
     }
   }
@@ -131,18 +136,17 @@ std::vector<LoopClosureRecord> LoopCloser::revisits(const Map& map, const Closur
 }
 
 std::optional<Pose> LoopCloser::locate(const Map& map, const Scene& scene) const {
-  const std::vector<Pose> poses = placePoses(map);
-  const std::vector<PlaceMatch> matches = places_.locate(scene, poses);
+  const std::vector<PlaceMatch> matches = places_.locate(units_.toPlaces(scene), placePoses(map));
   if (matches.empty()) return std::nullopt;
   const PlaceMatch& best = matches.front();
   // A match that passed every check but would not be believed alone is one of two that confirm each other.
   if (!best.accepted && best.refusal != PlaceRefusal::kUnsupported) return std::nullopt;
-  return poses[best.match] * best.T_match_query;
+  return map.T_map_keyframe(keyframe_of_place_[best.match]) * units_.fromPlaces(best).T_match_query;
 }
 
-std::optional<Pose> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base,
-                                         double drifted_m) const {
-  const RegistrationPrior prior = driftPrior(T_map_base, drifted_m, config_.revisit);
+std::optional<Pose> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double stddev_m,
+                                         const Motion& motion) const {
+  const RegistrationPrior prior = driftPrior(T_map_base, stddev_m, motion, odometry_, config_.revisit);
   const LoopClosureRecord* best = nullptr;
   const std::vector<LoopClosureRecord> records = findInMap(map, scene, prior, classes_, registration_, config_.revisit);
   for (const LoopClosureRecord& record : records) {
@@ -177,7 +181,7 @@ void LoopCloser::transfer(StateArchive& archive, const Map& map) {
     }
     for (const KeyframeId id : keyframe_of_place_) {
       const Keyframe& keyframe = map.keyframes()[id];
-      places[keyframe.submap].keyframes.push_back(keyframe);
+      places[keyframe.submap].keyframes.push_back(units_.toPlaces(keyframe));
     }
   }
   places_.transfer(archive, {places.begin(), places.end()});

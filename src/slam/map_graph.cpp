@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kSessionStddev_m = 1.0;  // of a pose by localization
 constexpr double kSessionStddev_rad = 0.03;
-constexpr double kLeastStep_m = 0.1;  // that odometry is uncertain by, however little was driven
+constexpr double kLeastStep_m = 1e-3;  // of an edge between keyframes: one at a stop has an inverse, too
+constexpr double kLeastStep_rad = 1e-5;
 
 PoseCov poseCov(double stddev_m, double stddev_rad) {
   PoseCov cov = PoseCov::Zero();
@@ -21,24 +22,27 @@ PoseCov poseCov(double stddev_m, double stddev_rad) {
 
 }  // namespace
 
-MapGraph::MapGraph(const BackEndConfig& config, const OdometryNoise& odometry, const ClassTable& classes)
-    : config_(config), odometry_noise_(odometry), classes_(classes), graph_(config.graph) {}
+MapGraph::MapGraph(const BackEndConfig& config, const ClassTable& classes)
+    : config_(config), classes_(classes), graph_(config.graph) {}
 
-void MapGraph::add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings) {
+void MapGraph::add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings,
+                   const OdometryModel& odometry) {
   auto seen = sightings.begin();
-  for (const KeyframeId keyframe : keyframes) graph_.addNode(nodeOf(map, keyframe, *seen++));
+  for (const KeyframeId keyframe : keyframes) graph_.addNode(nodeOf(map, keyframe, *seen++, odometry));
 }
 
-PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings) {
+PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings,
+                          const OdometryModel& odometry) {
   const Keyframe& keyframe = map.keyframes()[id];
   PoseNode node;
   if (id == KeyframeId(0)) {
     node.T_previous_node = keyframe.T_odom_base;
   } else {
     const Keyframe& previous = map.keyframes()[KeyframeId(id.index() - 1)];
-    const double distance_m = std::max(kLeastStep_m, keyframe.driven_m - previous.driven_m);
-    node.T_previous_node = previous.T_odom_base.inverse() * keyframe.T_odom_base;
-    node.odometry_cov = distance_m * poseCov(odometry_noise_.stddev_m, odometry_noise_.stddev_rad);
+    const Pose T_previous_keyframe = previous.T_odom_base.inverse() * keyframe.T_odom_base;
+    node.T_previous_node = expectedStep(odometry, T_previous_keyframe);
+    node.odometry_cov = stepCovariance(odometry, motionTo(keyframe) - motionTo(previous), T_previous_keyframe);
+    node.odometry_cov += poseCov(kLeastStep_m, kLeastStep_rad);
   }
   if (T_map_odom_start_ && !map.T_map_keyframes().empty()) {
     node.T_previous_node = map.T_map_keyframes().back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
@@ -48,7 +52,10 @@ PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sight
   for (const Sighting& sighting : sightings) {
     const ClassInfo& info = classes_[sighting.class_index];
     if (!config_.landmark_factors || !info.is_static || info.transition != Transition::kDirac) continue;
-    node.sightings.push_back({static_cast<std::int64_t>(sighting.landmark), sighting.position_m, sighting.cov_m2});
+    LandmarkSighting& seen = node.sightings.emplace_back();
+    seen.landmark = sighting.landmark;
+    seen.position_m = sighting.position_m;
+    seen.cov_m2 = sighting.cov_m2;
   }
   return node;
 }
@@ -112,12 +119,12 @@ Pose MapGraph::T_map_odom(const Map& map) const {
 }
 
 std::optional<Eigen::Vector3d> MapGraph::landmark(LandmarkId id) const {
-  return graph_.landmark(static_cast<std::int64_t>(id));
+  return graph_.landmark(id);
 }
 
 void MapGraph::transfer(StateArchive& archive, const Map& map) {
   archive(graph_, T_map_odom_start_);
-  if (graph_.nodes() != static_cast<int>(map.keyframes().size())) StateArchive::fail("a graph of other keyframes");
+  if (graph_.poses().size() != map.keyframes().size()) StateArchive::fail("a graph of other keyframes");
   if (!archive.isReading()) return;
   next_closure_ = map.closures().nextId();
   for (const ClosureId id : map.closures().ids()) {

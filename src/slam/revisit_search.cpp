@@ -10,8 +10,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kSamePlace_m = 10.0;
-
 /// Mean of what several keyframes say of a landmark.
 struct EarlierLandmark {
   RegistrationPoint point;
@@ -123,9 +121,8 @@ void describe(RevisitConfig& config, Fields& fields) {
   fields.add("range", config.range_m, "m", {1.0, 1000.0}, "Keyframes within half of this, and the drift, are used.");
   fields.add("base_stddev", config.base_stddev_m, "m", {0.01, 100.0}, "Deviation of the prior right after a closure,");
   fields.add("base_stddev_rad", config.base_stddev_rad, "rad", {1e-4, 3.0}, "and of its heading.");
-  fields.add("drift", config.drift_per_m, "m/m", {0.0, 1.0}, "Growth of the deviation with the distance since then.");
-  fields.add("drift_rad", config.drift_rad_per_sqrt_m, "rad/sqrt(m)", {0.0, 1.0}, "Growth of the heading's deviation.");
-  fields.add("max_stddev", config.max_stddev_m, "m", {0.1, 1000.0}, "The deviation stays below this.");
+  fields.add("max_stddev", config.max_stddev_m, "m", {0.1, 1000.0},
+             "The deviation, which grows with the odometry's errors, stays below this.");
   fields.add("min_log_evidence", config.min_log_evidence, "nats", {0.0, 1e6},
              "Least evidence of an accepted alignment against \"not here before\".");
   fields.add("min_log_margin", config.min_log_margin, "nats", {0.0, 1e6},
@@ -134,17 +131,8 @@ void describe(RevisitConfig& config, Fields& fields) {
              "Landmarks that an alignment pairs are one if they stand no further apart after it.");
 }
 
-std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m) {
-  return runsWithin(kSamePlace_m, position_m, map, map.keyframes().nextId()).size();
-}
-
-RegistrationPrior driftPrior(const Pose& T_map_base, double drifted_m, const RevisitConfig& config) {
-  RegistrationPrior prior;
-  prior.T_a_b = T_map_base;
-  prior.stddev_xy_m = std::min(config.max_stddev_m, config.base_stddev_m + config.drift_per_m * drifted_m);
-  prior.stddev_z_m = std::max(0.5, 0.5 * prior.stddev_xy_m);
-  prior.stddev_yaw_rad = config.base_stddev_rad + config.drift_rad_per_sqrt_m * std::sqrt(drifted_m);
-  return prior;
+std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m, double radius_m) {
+  return runsWithin(radius_m, position_m, map, map.keyframes().nextId()).size();
 }
 
 std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const RegistrationPrior& prior,
@@ -158,11 +146,10 @@ std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, con
   return records;
 }
 
-std::vector<LoopClosureRecord> findRevisits(const Map& map, KeyframeId query, double drifted_m,
+std::vector<LoopClosureRecord> findRevisits(const Map& map, KeyframeId query, const RegistrationPrior& prior,
                                             const ClassTable& classes, const RegistrationConfig& registration,
                                             const RevisitConfig& config) {
   const Keyframe& asked = map.keyframes()[query];
-  const RegistrationPrior prior = driftPrior(map.T_map_keyframe(query), drifted_m, config);
   KeyframeId end(0);
   while (end < query && map.keyframes()[end].driven_m <= asked.driven_m - config.min_driven_m) ++end;
   std::vector<LoopClosureRecord> records;

@@ -33,6 +33,18 @@ TrajectoryRecord Sessions::record(const Map& map) const {
   return record;
 }
 
+std::vector<SessionSummary> Sessions::summary(const Map& map) const {
+  std::vector<SessionSummary> result;
+  for (std::size_t s = 0; s < sessions_.size(); ++s) {
+    const Session& session = sessions_[s];
+    if (session.first_odometry >= odometry_.size()) continue;
+    const KeyframeId end = s + 1 == sessions_.size() ? map.keyframes().nextId() : sessions_[s + 1].first_keyframe;
+    const bool is_located = !session.fixes.empty() || session.first_keyframe < end;
+    result.push_back({odometry_[session.first_odometry].stamp, is_located});
+  }
+  return result;
+}
+
 void transfer(StateArchive& archive, MapFix& fix) {
   auto& [stamp, T_odom_base, T_map_base] = fix;
   archive(stamp, T_odom_base, T_map_base);

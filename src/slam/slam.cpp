@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/slam/slam.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -12,29 +13,23 @@ namespace semantic_mht_slam {
 
 namespace {
 
-const std::vector<std::pair<std::string, Method>> kMethods = {
-    {"odometry", Method::kOdometry}, {"ukf", Method::kUkf}, {"mhm", Method::kMhm}, {"dpmhm", Method::kDpmhm}};
-
 /// Driven between two sessions, for whoever takes what was driven lately for one pass.
 constexpr double kBetweenSessions_m = 1000.0;
 
-/// Followed without a fix before the place counts as one that changed, and is mapped again.
-constexpr double kFollowed_m = 20.0;
+/// Of the reach. Followed without a fix before the place counts as one that changed, and is mapped again; and how near
+/// the vehicle was if it was at a place.
+constexpr double kFollowed = 1.0 / 3.0;
+constexpr double kSamePlace = 1.0 / 6.0;
 
 constexpr double kMaxPause_s = 60.0;
-constexpr double kMaxSpeed_m_s = 60.0;
 
 /// Solutions after one that took closures back, so that what they had joined comes apart.
 constexpr int kMoreSolutions = 3;
 
-OdometryNoise odometryNoiseOf(const SubmapConfig& submap) {
-  return {submap.odometry_stddev_m, submap.odometry_stddev_rad};
-}
-
 /// Submaps whose landmarks the mapper itself may carry on into the present one.
 std::size_t recentSubmaps(const SlamConfig& config) {
   const SubmapConfig& submap = config.mapper.submap;
-  const double recent_m = std::max(config.back_end.revisit.min_driven_m, submap.propagation_m);
+  const double recent_m = std::max<double>(config.back_end.revisit.min_driven_m, submap.propagation_m);
   return static_cast<std::size_t>(recent_m / submap.length_m) + 2;
 }
 
@@ -43,56 +38,33 @@ SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
                   Rng(config.seed),
                   {},
                   Map(config.mapper.detection.keep_prob),
-                  MapGraph(config.back_end, odometryNoiseOf(config.mapper.submap), classes),
+                  MapGraph(config.back_end, classes),
                   {},
                   {},
                   {},
                   {},
                   {}};
-  if (config.method == Method::kOdometry) return parts;
-  parts.mapper.emplace(config.mapper, classes, config.registration);
-  parts.closer.emplace(config.back_end, classes, config.registration);
+  fitParts(config, classes, parts);
   return parts;
 }
 
 }  // namespace
 
-std::string nameOf(Method method) {
-  for (const auto& [name, value] : kMethods) {
-    if (value == method) return name;
-  }
-  throw std::logic_error("a method without a name");
-}
+Slam::Slam(const SlamConfig& config, const ClassTable& classes)
+    : config_(config), classes_(classes), fitted_(config), parts_(makeParts(config, classes)) {}
 
-SlamConfig defaultsOf(Method method) {
-  SlamConfig config;
-  config.method = method;
-  if (method == Method::kUkf) config.mapper = defaultsOf(Estimator::kUkf);
-  if (method == Method::kMhm) config.mapper = defaultsOf(Estimator::kMhm);
-  return config;
+bool Slam::goesOn(const StampedPose& next) const {
+  const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
+  if (!last || secondsFromStamp(next.stamp - last->stamp) > kMaxPause_s) return false;
+  return parts_.continuity.goesOn(next);
 }
-
-void describe(SlamConfig& config, Fields& fields) {
-  fields.add<Method>("method", config.method, kMethods,
-                     "How the map is made; ukf and mhm have other defaults for some keys (docs/method.md).");
-  fields.add("seed", config.seed, "", "Seed of everything random: same input and seed, same result.");
-  fields.group("input", config.input);
-  fields.group("registration", config.registration);
-  describe(config.mapper, fields);
-  describe(config.back_end, fields);
-  fields.group("localization", config.localization);
-}
-
-bool goesOn(const StampedPose& last, const StampedPose& next) {
-  const double pause_s = secondsFromStamp(next.stamp - last.stamp);
-  const double way_m = (next.T_world_base.translation_m - last.T_world_base.translation_m).norm();
-  return pause_s > 0.0 && pause_s <= kMaxPause_s && way_m <= kMaxSpeed_m_s * pause_s;
-}
-
-Slam::Slam(const SlamConfig& config, const ClassTable& classes) : config_(config), parts_(makeParts(config, classes)) {}
 
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
+  const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
+  const bool is_later = last && T_odom_base.stamp > last->stamp && T_odom_base.T_world_base.isValid();
+  if (is_later && !parts_.continuity.goesOn(T_odom_base)) beginSession();
   if (!parts_.assembler.addOdometry(T_odom_base)) return false;
+  parts_.continuity.add(T_odom_base);
   parts_.sessions.add(T_odom_base);
   processReadyFrames();
   return true;
@@ -106,9 +78,13 @@ void Slam::addDetections(Stamp stamp, Detections detections) {
 void Slam::processReadyFrames() {
   while (auto frame = parts_.assembler.next()) {
     if (parts_.mapper && parts_.latest_frame) {
-      parts_.driven_m += (frame->T_odom_base.translation_m - parts_.latest_frame->T_odom_base.translation_m).norm();
+      parts_.driven = parts_.driven + motionOf(parts_.latest_frame->T_odom_base.inverse() * frame->T_odom_base);
     }
-    if (parts_.mapper) process(*frame);
+    if (parts_.mapper && parts_.standing.add(frame->T_odom_base)) {
+      parts_.assembler.countStanding();
+    } else if (parts_.mapper) {
+      processOrWait(*frame);
+    }
     parts_.latest_frame = std::move(frame);
   }
 }
@@ -118,7 +94,8 @@ void Slam::process(const Frame& frame) {
   if (localizerOf(parts_.mode) != nullptr) return;
   if (parts_.mapper->isFullAt(frame.T_odom_base)) {
     endSubmap();
-    if (isPlaceKnown(parts_.map, config_.localization.known_passes)) {
+    const double reach_m = fitted_.mapper.alignment.radius_m;
+    if (isPlaceKnown(parts_.map, fitted_.localization.known_passes, kSamePlace * reach_m)) {
       enter(Following{localizerHere()});
       return follow(frame);
     }
@@ -134,42 +111,50 @@ void Slam::follow(const Frame& frame) {
   Localizer& localizer = *localizerOf(parts_.mode);
   Frame calibrated = frame;
   calibrated.detections = parts_.mapper->calibrated(frame.detections);
+  const double reach_m = fitted_.mapper.alignment.radius_m;
   const bool is_found = localizer.add(calibrated, parts_.map, *parts_.closer);
   if (is_found) parts_.sessions.add(localizer.fix());
   const auto* localizing = std::get_if<Localizing>(&parts_.mode);
   if (localizing != nullptr && !localizing->until_found) return;
   if (is_found) {
-    const std::size_t passes = config_.localization.known_passes;
-    const bool is_known = passes > 0 && passesAt(parts_.map, localizer.fix().T_map_base.translation_m) >= passes;
+    const std::size_t passes = fitted_.localization.known_passes;
+    const Eigen::Vector3d& position_m = localizer.fix().T_map_base.translation_m;
+    const bool is_known = passes > 0 && passesAt(parts_.map, position_m, kSamePlace * reach_m) >= passes;
     is_known ? enter(Following{localizer}) : enter(Mapping{});
-  } else if (localizing == nullptr && localizer.sinceFix_m() > kFollowed_m) {
+  } else if (localizing == nullptr && localizer.sinceFix_m() > kFollowed * reach_m) {
     enter(Mapping{});
   }
 }
 
 void Slam::beginSubmap(const Frame& frame) {
-  const double drifted_m = parts_.driven_m - std::max(parts_.tied_at_m, parts_.map.closedAt_m());
-  parts_.prediction = parts_.closer->predict(parts_.map, T_map_odom() * frame.T_odom_base, std::max(0.0, drifted_m));
-  parts_.submap_driven_m = parts_.driven_m;
+  const double tied_at_m = std::max(parts_.tied_at_m, parts_.map.closedAt_m());
+  const Motion ahead = parts_.map.keyframes().empty()
+                           ? Motion{}
+                           : motionOf(parts_.map.keyframes().back().T_odom_base.inverse() * frame.T_odom_base);
+  parts_.prediction = parts_.closer->predict(parts_.map, T_map_odom() * frame.T_odom_base, tied_at_m, ahead);
+  parts_.submap_driven = parts_.driven;
   EarlierMap earlier;
   if (config_.back_end.close_loops) {
-    earlier = earlierMapAround(parts_.prediction.prior, parts_.map, parts_.graph, recentSubmaps(config_));
+    earlier = earlierMapAround(parts_.prediction.prior, parts_.map, parts_.graph, recentSubmaps(fitted_),
+                               fitted_.mapper.alignment.radius_m);
   }
   parts_.mapper->begin(frame.T_odom_base, std::move(earlier));
 }
 
 void Slam::endSubmap() {
+  if (!parts_.is_fitted && !parts_.waiting.empty()) fitToDetector();
   if (!parts_.mapper || !parts_.mapper->isOpen()) return;
   const Stopwatch watch;
   FinishedSubmap finished = parts_.mapper->finish();
   parts_.mapping_s += watch.elapsed_s();
   Map& map = parts_.map;
-  CutSubmap cut =
-      cutIntoKeyframes(finished.submap, finished.frames, parts_.submap_driven_m, config_.mapper.detection.keep_prob,
-                       odometryNoiseOf(config_.mapper.submap), config_.back_end.keyframe);
+  const OdometryModel& odometry = parts_.mapper->odometryModel();
+  parts_.closer->setOdometry(odometry);
+  CutSubmap cut = cutIntoKeyframes(finished.submap, finished.frames, parts_.submap_driven,
+                                   fitted_.mapper.detection.keep_prob, odometry, fitted_.back_end.keyframe);
   const IdRange<KeyframeId> keyframes =
       map.add(std::make_shared<const Submap>(std::move(finished.submap)), std::move(cut.keyframes));
-  parts_.graph.add(map, keyframes, cut.sightings);
+  parts_.graph.add(map, keyframes, cut.sightings, odometry);
   optimize();
   parts_.closer->add(map);
   const ClosureQuery query{keyframes, std::move(finished.alignment), parts_.prediction, parts_.tied_at_m};
@@ -200,7 +185,7 @@ void Slam::finish() {
 
 /// A localizer that begins where the odometry is by its present correction.
 Localizer Slam::localizerHere() const {
-  Localizer localizer(config_.localization, config_.back_end.revisit);
+  Localizer localizer(fitted_.localization);
   localizer.expectAt(T_map_odom(), 0.0);
   return localizer;
 }
@@ -210,8 +195,8 @@ void Slam::enter(Mode mode) {
   endSubmap();
   const Localizer* before = localizerOf(parts_.mode);
   if (before != nullptr && std::holds_alternative<Mapping>(mode)) {
-    parts_.driven_m += kBetweenSessions_m;
-    parts_.tied_at_m = parts_.driven_m;
+    parts_.driven.way_m += kBetweenSessions_m;
+    parts_.tied_at_m = parts_.driven.way_m;
     parts_.graph.goOnAt(*before->T_map_odom());
     parts_.mapper->forgetSurroundings();
   }
@@ -237,10 +222,11 @@ void Slam::beginSession() {
   const auto* localizing = std::get_if<Localizing>(&parts_.mode);
   const bool is_mapping_wanted = localizing == nullptr || localizing->until_found;
   parts_.assembler.beginSession();
+  parts_.continuity.clear();
   parts_.latest_frame.reset();
   parts_.sessions.begin(parts_.map.keyframes().nextId());
   if (parts_.map.submaps().empty()) return;
-  enter(Localizing{Localizer(config_.localization, config_.back_end.revisit), is_mapping_wanted});
+  enter(Localizing{Localizer(fitted_.localization), is_mapping_wanted});
 }
 
 bool Slam::expectAt(const Pose& T_map_base, double stddev_m) {

@@ -6,15 +6,18 @@
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/models/detection_state.h"
+#include "semantic_mht_slam/slam/drift_prior.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 namespace semantic_mht_slam {
 
 void transfer(StateArchive& archive, InputCounters& counters) {
   auto& [odometry, odometry_invalid, odometry_not_rising, frames, frames_before_odometry, frames_not_rising,
-         frames_far_ahead, frames_in_odometry_gap, frames_waiting_too_long, detections, detections_invalid] = counters;
+         frames_far_ahead, frames_in_odometry_gap, frames_waiting_too_long, detections, detections_invalid,
+         detections_at_origin, covariances_unknown, frames_standing] = counters;
   archive(odometry, odometry_invalid, odometry_not_rising, frames, frames_before_odometry, frames_not_rising);
   archive(frames_far_ahead, frames_in_odometry_gap, frames_waiting_too_long, detections, detections_invalid);
+  archive(detections_at_origin, covariances_unknown, frames_standing);
 }
 
 void FrameAssembler::WaitingFrame::transfer(StateArchive& archive) {
@@ -30,13 +33,16 @@ namespace {
 /// A vehicle that was localizing goes on from its last fix if that is not far back.
 Mode modeAgain(std::size_t kind, bool is_mapping_wanted, const SlamConfig& config, const Sessions& sessions) {
   if (kind == Mode(Mapping{}).index()) return Mapping{};
-  Localizer localizer(config.localization, config.back_end.revisit);
+  Localizer localizer(config.localization);
   const MapFix* fix = sessions.latestFix();
   const std::optional<StampedPose> odometry = sessions.latestOdometry();
   if (fix == nullptr || !odometry) return Localizing{localizer, is_mapping_wanted};
   const double way_m = (odometry->T_world_base.translation_m - fix->T_odom_base.translation_m).norm();
   if (way_m > config.localization.lost_after_m) return Localizing{localizer, is_mapping_wanted};
-  const double stddev_m = driftPrior(fix->T_map_base, way_m, config.back_end.revisit).stddev_xy_m;
+  const Motion motion = motionOf(fix->T_odom_base.inverse() * odometry->T_world_base);
+  OdometryModel model;  // what was learned is read later
+  model.noise = config.mapper.odometry.noise;
+  const double stddev_m = driftPrior(fix->T_map_base, 0.0, motion, model, config.back_end.revisit).stddev_xy_m;
   localizer.expectAt(fix->T_map_base * fix->T_odom_base.inverse(), stddev_m);
   if (is_mapping_wanted) return Following{localizer};
   return Localizing{localizer, false};
@@ -50,6 +56,12 @@ void transferMode(StateArchive& archive, const SlamConfig& config, SlamParts& pa
   if (archive.isReading()) parts.mode = modeAgain(kind, is_mapping_wanted, config, parts.sessions);
 }
 
+void transferDetector(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
+  archive(parts.range_factor, parts.is_fitted, parts.detector_range, parts.waiting);
+  archive(parts.continuity, parts.standing);
+  if (!(parts.range_factor > 1e-3 && parts.range_factor < 1e3)) StateArchive::fail("a detector of no range");
+}
+
 void transferInput(StateArchive& archive, const SlamConfig& config, SlamParts& parts) {
   std::string method = nameOf(config.method);
   archive(method);
@@ -57,7 +69,7 @@ void transferInput(StateArchive& archive, const SlamConfig& config, SlamParts& p
     throw InputError("made with the method '" + method + "', the present one is '" + nameOf(config.method) + "'");
   }
   archive(parts.assembler, parts.sessions, parts.latest_frame, parts.rng);
-  archive(parts.driven_m, parts.submap_driven_m, parts.tied_at_m, parts.prediction);
+  archive(parts.driven, parts.submap_driven, parts.tied_at_m, parts.prediction);
   transferMode(archive, config, parts);
 }
 
@@ -76,7 +88,9 @@ void transferGraph(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
 }
 
 void transferMapper(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
-  if (parts.mapper) archive(*parts.mapper);
+  if (!parts.mapper) return;
+  archive(*parts.mapper);
+  if (archive.isReading()) parts.closer->setOdometry(parts.mapper->odometryModel());
 }
 
 /// What is written and read together, in the order in which it is read.
@@ -86,13 +100,13 @@ struct Section {
   void (*transfer)(StateArchive& archive, const SlamConfig& config, SlamParts& parts);
 };
 
-constexpr Section kSections[] = {{"input", 2, transferInput},
-                                 {"submaps", 2, transferSubmaps},
-                                 {"keyframes", 2, transferKeyframes},
-                                 {"graph", 2, transferGraph},
-                                 {"hypotheses", 4, transferMapper}};
+constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 3, transferInput},
+                                 {"submaps", 2, transferSubmaps},   {"keyframes", 3, transferKeyframes},
+                                 {"graph", 2, transferGraph},       {"hypotheses", 5, transferMapper}};
 
-void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config, SlamParts& parts) {
+/// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
+void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,
+             const ClassTable& classes, SlamConfig& fitted, SlamParts& parts) {
   for (const Section& section : kSections) {
     const auto found = std::find_if(state.sections.begin(), state.sections.end(),
                                     [&](const StateSection& other) { return other.name == section.name; });
@@ -102,8 +116,11 @@ void restore(const SlamState& state, const KeepReading& keep_reading, const Slam
                        ", this program reads version " + std::to_string(section.version));
     }
     StateArchive archive(found->bytes, keep_reading);
-    section.transfer(archive, config, parts);
+    section.transfer(archive, fitted, parts);
     archive.requireEnd();
+    if (section.transfer != transferDetector || parts.range_factor == 1.0) continue;
+    fitted = fittedTo(config, parts.range_factor);
+    fitParts(fitted, classes, parts);
   }
 }
 
@@ -113,7 +130,7 @@ SlamState Slam::snapshot() const {
   SlamState state;
   for (const Section& section : kSections) {
     StateArchive archive;
-    section.transfer(archive, config_, const_cast<SlamParts&>(parts_));  // a writing archive changes nothing
+    section.transfer(archive, fitted_, const_cast<SlamParts&>(parts_));  // a writing archive changes nothing
     state.sections.push_back({section.name, section.version, archive.written()});
   }
   return state;
@@ -122,7 +139,7 @@ SlamState Slam::snapshot() const {
 Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state, const KeepReading& keep_reading)
     : Slam(config, classes) {
   try {
-    restore(state, keep_reading, config_, parts_);
+    restore(state, keep_reading, config_, classes_, fitted_, parts_);
   } catch (const std::exception& error) {
     if (state.source.empty()) throw;
     throw InputError(state.source + ": " + error.what());

@@ -5,8 +5,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kSensorReach_m = 60.0;
-constexpr double kGraphShift_m = 10.0;  // as far as the graph may move a landmark in its submap
+constexpr double kGraphShift = 1.0 / 6.0;  // of the reach: as far as the graph may move a landmark in its submap
 
 /// A landmark of a submap in the map frame; those of the pose graph stand where the graph has them.
 MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, const MixtureLandmark& seen) {
@@ -30,22 +29,23 @@ std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph) 
 }
 
 EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, const MapGraph& graph,
-                            std::size_t recent_submaps) {
+                            std::size_t recent_submaps, double reach_m) {
   EarlierMap earlier;
   earlier.stddev_xy_m = prior.stddev_xy_m;
   earlier.stddev_z_m = prior.stddev_z_m;
   earlier.stddev_yaw_rad = prior.stddev_yaw_rad;
   const Pose T_submap_map = prior.T_a_b.inverse();
-  const double radius_m = kSensorReach_m + 3.0 * prior.stddev_xy_m;
+  const double shift_m = kGraphShift * reach_m;
+  const double radius_m = reach_m + 3.0 * prior.stddev_xy_m;
   const auto isWithin = [&](const Eigen::Vector3d& position_m, double distance_m) {
     return (position_m - prior.T_a_b.translation_m).head<2>().norm() <= distance_m;
   };
   for (const SubmapId submap : map.submaps().ids()) {
     const Pose& T_map_seen = map.T_map_submap(submap);
-    if (!isWithin(T_map_seen.translation_m, radius_m + kGraphShift_m + map.reach_m(submap))) continue;
+    if (!isWithin(T_map_seen.translation_m, radius_m + shift_m + map.reach_m(submap))) continue;
     if (submap.index() + recent_submaps >= map.submaps().size()) break;
     map.forEachLandmarkOf(submap, [&](LandmarkId name, const MixtureLandmark& seen) {
-      if (!isWithin(T_map_seen * seen.position.mean_m, radius_m + kGraphShift_m)) return;
+      if (!isWithin(T_map_seen * seen.position.mean_m, radius_m + shift_m)) return;
       MixtureLandmark landmark = inMap(map, graph, submap, seen);
       if (!isWithin(landmark.position.mean_m, radius_m)) return;
       landmark.id = name;
@@ -55,7 +55,7 @@ EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, cons
   return earlier;
 }
 
-bool isPlaceKnown(const Map& map, std::size_t passes) {
+bool isPlaceKnown(const Map& map, std::size_t passes, double radius_m) {
   if (passes == 0 || map.submaps().empty()) return false;
   const SubmapId newest(map.submaps().size() - 1);
   const IdRange<KeyframeId> keyframes = map.keyframesOf(newest);
@@ -64,7 +64,7 @@ bool isPlaceKnown(const Map& map, std::size_t passes) {
   };
   if (std::none_of(map.closures().begin(), map.closures().end(), ties)) return false;
   for (const KeyframeId keyframe : keyframes) {
-    if (passesAt(map, map.T_map_keyframe(keyframe).translation_m) < passes) return false;
+    if (passesAt(map, map.T_map_keyframe(keyframe).translation_m, radius_m) < passes) return false;
   }
   return true;
 }

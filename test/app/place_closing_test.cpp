@@ -160,6 +160,7 @@ TEST(PlaceClosingTest, SubmapsThatTheTreeSkipsAreNotSearchedAndAreTold) {
                                         [](const Detection& d) { return d.position_m.norm() < 8.0; });
   SystemConfig config;
   config.slam.back_end.evaluator.check_all = false;
+  config.slam.mapper.submap.length_m = 30.0;  // as in the drives that the tree was made from
   config.slam.back_end.revisit.enabled = false;
   config.slam.mapper.alignment.enabled = false;
   const RunResult result = run(drive, loadableSlamConfig(config, ""));

@@ -18,7 +18,7 @@ Eigen::Vector3d place(Rng& rng) {
 TreeInput makeInput(const std::vector<Eigen::Vector3d>& objects, std::size_t frame, Rng& rng) {
   TreeInput input;
   input.frame = frame;
-  input.step_m = 1.0;
+  input.T_submap_last.translation_m.x() = -1.0;  // driven since
   for (int i = 0; i < kMeasurements; ++i) {
     Measurement measurement;
     const Eigen::Vector3d noise_m(rng.normal(), rng.normal(), rng.normal());

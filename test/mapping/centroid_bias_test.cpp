@@ -13,6 +13,7 @@ namespace {
 constexpr double kKeyframeSpacing_m = 2.0;
 constexpr int kKeyframes = 16;
 constexpr double kNoise_m = 0.05;
+const OdometryNoise kOdometry{0.03, 0.03, 0.03, 0.0007, 0.0, 0.0007};
 
 enum Class { kBuilding, kPole, kVehicle };  // the first has no bias
 
@@ -75,7 +76,7 @@ BiasStretch drive(Rng& rng, double scale_error, bool is_biased) {
 CentroidBias estimate(std::uint64_t seed, double scale_error, bool is_biased, int stretches = 60) {
   CentroidBias bias({}, makeTable());
   Rng rng(seed);
-  for (int i = 0; i < stretches; ++i) bias.add(drive(rng, scale_error, is_biased), 0.03, 0.0007);
+  for (int i = 0; i < stretches; ++i) bias.add(drive(rng, scale_error, is_biased), kOdometry);
   return bias;
 }
 
@@ -180,7 +181,7 @@ TEST(CentroidBiasTest, SwitchedOffItDoesNothing) {
   config.enabled = false;
   CentroidBias bias(config, makeTable());
   Rng rng(7);
-  bias.add(drive(rng, 0.0, true), 0.03, 0.0007);
+  bias.add(drive(rng, 0.0, true), kOdometry);
   EXPECT_EQ(bias.at(kVehicle, 20.0).range_m, 0.0);
   EXPECT_TRUE(bias.uncertainty(kVehicle, {20.0, 0.0, 0.0}).isZero(0.0));
 }
@@ -189,10 +190,10 @@ TEST(CentroidBiasTest, OrderOfObservationsDoesNotMatter) {
   Rng rng(8);
   BiasStretch stretch = drive(rng, 0.0, true);
   CentroidBias a({}, makeTable());
-  a.add(stretch, 0.03, 0.0007);
+  a.add(stretch, kOdometry);
   std::reverse(stretch.observations.begin(), stretch.observations.end());
   CentroidBias b({}, makeTable());
-  b.add(stretch, 0.03, 0.0007);
+  b.add(stretch, kOdometry);
   EXPECT_NEAR(a.at(kVehicle, 20.0).range_m, b.at(kVehicle, 20.0).range_m, 1e-9);
 }
 

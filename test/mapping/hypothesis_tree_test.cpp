@@ -33,7 +33,7 @@ TreeInput makeInput(Rng& rng, std::size_t frame, int count) {
   TreeInput input;
   input.frame = frame;
   input.driven_m = static_cast<double>(frame);
-  input.step_m = 1.0;
+  input.T_submap_last.translation_m.x() = -1.0;  // driven since
   for (int i = 0; i < count; ++i) {
     Measurement measurement;
     measurement.position_m = {rng.uniform(0.0, 12.0), rng.uniform(0.0, 12.0), rng.normal(0.0, 0.2)};
@@ -189,7 +189,7 @@ double correctionBy(double error_m, int observations) {
   MultiHypothesisTree tree(config, makeTable());
   tree.restart({makePole(10.0, observations)});
   TreeInput input = makeInputOf({makeMeasurement({10.0, error_m, 0.0}, 100)});
-  input.step_m = 10.0;
+  input.T_submap_last.translation_m.x() = -10.0;  // driven since
   Rng rng(1);
   tree.step(input, rng);
   EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement.front(), 1U);

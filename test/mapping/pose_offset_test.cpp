@@ -55,10 +55,53 @@ TEST(PoseOffsetTest, OneWrongAssociationHardlyMovesIt) {
 
 TEST(PoseOffsetTest, WithoutObservationsItOnlyGrows) {
   const PoseOffset start;
-  const PoseOffset after = grown(start, 4.0, 0.03, 0.001);
+  OdometryModel odometry;
+  odometry.noise.along_m_per_sqrt_m = 0.03;
+  odometry.noise.across_m_per_sqrt_m = 0.02;
+  odometry.noise.heading_rad_per_sqrt_m = 0.001;
+  odometry.noise.heading_rad_per_sqrt_rad = 0.01;
+  const Pose step{expRotation({0.0, 0.0, 0.5}), {4.0, 0.0, 0.0}};
+  const PoseOffset after = grown(start, Pose::identity(), step, odometry);
   EXPECT_NEAR(after.cov(0, 0), 4.0 * 0.0009, 1e-12);
-  EXPECT_NEAR(after.cov(3, 3), 4.0e-6, 1e-15);
+  EXPECT_NEAR(after.cov(1, 1), 4.0 * 0.0004, 1e-12);
+  EXPECT_NEAR(after.cov(3, 3), 4.0e-6 + 0.5e-4, 1e-15);
+  EXPECT_TRUE(after.mean.isZero(1e-12));
   EXPECT_EQ(updated(after, {}, 2.0).cov, after.cov);
+}
+
+TEST(PoseOffsetTest, TurningOnTheSpotMakesTheHeadingUncertain) {
+  const Pose turned{expRotation({0.0, 0.0, 1.0}), Eigen::Vector3d::Zero()};
+  const PoseOffset after = grown({}, Pose::identity(), turned, {});
+  EXPECT_NEAR(std::sqrt(after.cov(3, 3)), OdometryNoise{}.heading_rad_per_sqrt_rad, 1e-9);
+  EXPECT_TRUE((after.cov.topLeftCorner<3, 3>().isZero(0.0)));
+}
+
+TEST(PoseOffsetTest, AnErrorOfTheHeadingTurnsWhatIsDrivenNext) {
+  PoseOffset offset;
+  offset.mean[3] = 0.1;
+  offset.cov(3, 3) = 1e-4;
+  const Pose step{Eigen::Quaterniond::Identity(), {10.0, 0.0, 0.0}};
+  const PoseOffset after = grown(offset, Pose::identity(), step, {});
+  EXPECT_LT((corrected(step, after).translation_m - expRotation({0.0, 0.0, 0.1}) * step.translation_m).norm(), 1e-9);
+  const double across_m2 =
+      after.cov(1, 1) - 10.0 * OdometryNoise{}.across_m_per_sqrt_m * OdometryNoise{}.across_m_per_sqrt_m;
+  EXPECT_NEAR(across_m2, 1e-2, 5e-4);
+  EXPECT_NEAR(after.cov(1, 3), 1e-3 * std::cos(0.1), 1e-9);
+}
+
+TEST(PoseOffsetTest, SystematicErrorsOfTheOdometryAreTakenOff) {
+  OdometryModel odometry;
+  odometry.systematic.scale_translation.mean = 0.1;
+  odometry.systematic.scale_turn.mean = -0.03;
+  odometry.systematic.heading_rad_per_m.mean = 0.01;
+  odometry.systematic.direction_m_per_m.mean = 0.02;
+  odometry.systematic.lever_m_per_rad.mean = 0.5;
+  const Pose last{expRotation({0.0, 0.0, 0.7}), {5.0, 2.0, 1.0}};
+  const Pose step{expRotation({0.0, 0.0, 0.2}), {3.0, 0.0, 0.0}};
+  const PoseOffset after = grown({}, last, last * step, odometry);
+  const Pose is = last.inverse() * corrected(last * step, after);
+  EXPECT_LT((is.translation_m - Eigen::Vector3d(3.3, 0.06 + 0.1, 0.0)).norm(), 1e-9);
+  EXPECT_NEAR(headingOf(is.rotation), 0.2 - 0.006 + 0.03, 1e-9);
 }
 
 TEST(PoseOffsetTest, HeadingErrorsMovePointsAcrossTheLever) {

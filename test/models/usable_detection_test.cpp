@@ -72,5 +72,21 @@ TEST(UsableDetectionTest, RemovingKeepsTheOrderOfTheOthersAndCounts) {
   EXPECT_EQ(detections[1].row, 3);
 }
 
+TEST(UsableDetectionTest, WhatLiesAtExactlyZeroWasNotSeen) {
+  Detections detections = {detectionAt({0.0, 0.0, 0.0}), detectionAt({1e-9, 0.0, 0.0}), detectionAt({0.0, 0.0, 0.0})};
+  EXPECT_EQ(removeAtOrigin(detections), 2U);
+  ASSERT_EQ(detections.size(), 1U);
+  EXPECT_EQ(detections[0].position_m.x(), 1e-9);
+}
+
+TEST(UsableDetectionTest, CovariancesThatSayNothingAreForgotten) {
+  const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  Detections detections = {detectionWith(-1.0 * unit), detectionWith(9999.0 * unit), detectionWith(0.0 * unit),
+                           detectionWith(0.04 * unit), detectionAt({1.0, 2.0, 3.0})};
+  EXPECT_EQ(forgetUnknownCovariances(detections), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(detections[i].cov_m2) << i;
+  EXPECT_TRUE(detections[3].cov_m2);
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

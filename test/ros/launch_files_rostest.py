@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
 """What the launch files make of their arguments, and how they end when they cannot begin."""
-import math
 import os
 import shutil
 import signal
@@ -8,13 +7,10 @@ import subprocess
 import tempfile
 import unittest
 
-import rosbag
 import rosgraph
-import rospkg
 import rospy
 import rostest
 import yaml
-from geometry_msgs.msg import PoseWithCovarianceStamped
 
 WAIT_S = 60.0
 PACKAGE = "semantic_mht_slam"
@@ -83,42 +79,6 @@ class LaunchFilesTest(unittest.TestCase):
     def test_bag_that_there_is_not_is_told_in_one_line(self):
         self.expect_end("play_bag: there is no bag '/nope.bag' (bag:= must be an absolute path)", "kitti.launch",
                         "bag:=/nope.bag")
-
-    def run_program(self, *arguments):
-        run = subprocess.run(["rosrun", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                             check=False, timeout=WAIT_S)
-        self.assertEqual(run.returncode, 0, run.stdout)
-
-    def test_robot_finds_itself_at_boot_without_a_service_call(self):
-        drive, result = os.path.join(self.folder, "drive"), os.path.join(self.folder, "result")
-        scenario = os.path.join(rospkg.RosPack().get_path(PACKAGE), "config", "scenarios", "short.yaml")
-        self.run_program(PACKAGE, "simulate_drive", "--scenario", scenario, "--seed", "1", "--output", drive)
-        self.run_program(PACKAGE, "slam_offline", "--bag", drive + "/drive.bag", "--output", result)
-        with rosbag.Bag(result + "/map.bag") as bag:
-            path, = [message for _, message, _ in bag.read_messages(topics=["/trajectory"])]
-        with rosbag.Bag(drive + "/drive.bag") as bag:
-            origin, = [message.data for _, message, _ in bag.read_messages(topics=["/time_origin"])]
-        places = {pose.header.stamp.to_nsec() + origin.to_nsec(): pose.pose.position for pose in path.poses}
-        errors_m = {}
-
-        def note(message):
-            there, here = places[message.header.stamp.to_nsec()], message.pose.pose.position
-            errors_m[message.header.stamp.to_sec()] = math.dist((here.x, here.y), (there.x, there.y))
-
-        subscriber = rospy.Subscriber("/boot/pose", PoseWithCovarianceStamped, note, queue_size=1000)
-        launch = subprocess.Popen(["roslaunch", PACKAGE, "localization.launch", f"map:={result}/map.bag", "rviz:=false"],
-                                  stdout=subprocess.DEVNULL, env=dict(os.environ, ROS_NAMESPACE="boot"))
-        try:
-            rospy.wait_for_service("/boot/save_map", WAIT_S)
-            self.run_program("rosbag", "play", "--quiet", "--wait-for-subscribers", "--rate", "10", "--start", "50",
-                             "--duration", "50", "--topics", "/objects", "/odometry", "/tf", "/tf_static", "--bags",
-                             drive + "/drive.bag", "/objects:=/boot/objects", "/odometry:=/boot/odometry")
-            self.assertGreater(len(errors_m), 200, "the vehicle was found on the first half of the way")
-            self.assertLess(max(errors_m.values()), 2.0, "metres, from the first pose on")
-        finally:
-            subscriber.unregister()
-            launch.send_signal(signal.SIGINT)
-            launch.wait(WAIT_S)
 
     def test_all_names_are_in_the_namespace_and_old_parameters_are_gone(self):
         rospy.set_param("/robot1/slam_node/node/map", "/of/an/earlier/launch.bag")

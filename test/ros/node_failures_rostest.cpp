@@ -106,8 +106,9 @@ TEST(NodeFailuresTest, NumbersThatNobodyShouldSendAreRefusedAndNamed) {
   objects.publish(far);
   ros::WallDuration(0.2).sleep();
   for (int i = 40; i < 44; ++i) {
+    const Pose on_the_line{Eigen::Quaterniond::Identity(), {0.1 * i, 0.0, 0.0}};
     nav_msgs::Odometry uncertain =
-        toOdometry({stampFromSeconds(RunningNode::kBegin_s + 0.01 * i), Pose::identity()}, "odom", "base_link");
+        toOdometry({stampFromSeconds(RunningNode::kBegin_s + 0.01 * i), on_the_line}, "odom", "base_link");
     const double values[] = {kInfinity, kNotANumber, -1.0, 1e308};
     uncertain.pose.covariance.fill(values[i - 40]);
     uncertain.twist.covariance.fill(values[i - 40]);

@@ -199,7 +199,11 @@ TEST_F(SlamNodeTest, WrongInputIsNamedInAWarningAndOneWrongStampChangesNothing) 
   EXPECT_GE(trajectory_.poses.size(), 41U);
 }
 
+constexpr std::uint16_t kPoleId = 80;  // of config/classes_semantic_kitti.yaml
+
 TEST_F(SlamNodeTest, ObjectsThatOvertakeTheOdometryOfAJumpBelongToTheNewMap) {
+  std_srvs::Trigger reset;  // whoever is lost would look for the place instead of beginning a new map
+  ASSERT_TRUE(ros::service::call("reset", reset) && reset.response.success);
   ros::Publisher odometry = handle_.advertise<nav_msgs::Odometry>("odometry", 100);
   ros::Publisher objects = handle_.advertise<SemanticObjectArray>("objects", 100);
   const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10.0);
@@ -210,12 +214,21 @@ TEST_F(SlamNodeTest, ObjectsThatOvertakeTheOdometryOfAJumpBelongToTheNewMap) {
     odometry.publish(toOdometry({stamp, Pose::identity()}, "odom", "base_link"));
     ros::WallDuration(0.02).sleep();
   };
-  objects.publish(toMessage(100 * kOrigin + kOrigin / 20, "base_link", {}, makeTwoClasses()));
+  const auto poles = [](Stamp stamp) {  // enough to know the range of the detector, which the first frames wait for
+    SemanticObjectArray message = toMessage(stamp, "base_link", Detections(30), makeTwoClasses());
+    for (std::size_t i = 0; i < message.objects.size(); ++i) {
+      message.objects[i].class_id = kPoleId;
+      message.objects[i].position.x = 20.0;
+      message.objects[i].position.y = 2.0 * static_cast<double>(i) - 29.0;
+    }
+    return message;
+  };
+  objects.publish(poles(100 * kOrigin + kOrigin / 20));
   for (int i = 0; i < 10; ++i) publish(100 * kOrigin + i * kOrigin / 10);
   ros::WallDuration(0.3).sleep();
   trees_.clear();
   const Stamp begin = 20 * kOrigin;
-  objects.publish(toMessage(begin, "base_link", {}, makeTwoClasses()));
+  objects.publish(poles(begin));
   ros::WallDuration(0.2).sleep();  // the node has read the objects before the first odometry of the new time
   for (int i = 0; i < 10; ++i) publish(begin + i * kOrigin / 10);
   ros::WallDuration(0.5).sleep();

@@ -18,7 +18,7 @@ StampedPose odometryAt(double seconds) {
 
 Detection detectionAt(double x) {
   Detection detection;
-  detection.position_m = {x, 0.0, 0.0};
+  detection.position_m = {x, 1.0, 0.0};
   return detection;
 }
 
@@ -93,20 +93,24 @@ TEST(FrameAssemblerTest, BadOdometryIsDroppedAndCounted) {
 
 TEST(FrameAssemblerTest, BadDetectionsAreDroppedOneByOneAndTheRestStays) {
   FrameAssembler assembler({});
-  Detections detections(7, detectionAt(1.0));
+  Detections detections(8, detectionAt(1.0));
   detections[0].position_m.y() = std::nan("");
   detections[1].score = -0.5;
   detections[2].cov_m2 = Eigen::Matrix3d::Zero();
   detections[3].score = std::nan("");
   detections[4].size_m = Eigen::Vector3d(-1.0, 1.0, 1.0);
   detections[5].score = 0.5;
+  detections[6].position_m.setZero();
   assembler.addDetections(kSecond, detections);
   assembler.addOdometry(odometryAt(1.0));
   const auto frame = assembler.next();
   ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->detections.size(), 2U);
-  EXPECT_EQ(assembler.counters().detections_invalid, 5U);
-  EXPECT_EQ(assembler.counters().detections, 2U);
+  ASSERT_EQ(frame->detections.size(), 3U);
+  EXPECT_FALSE(frame->detections[0].cov_m2) << "a covariance of zero says that nothing is known of it";
+  EXPECT_EQ(assembler.counters().covariances_unknown, 1U);
+  EXPECT_EQ(assembler.counters().detections_at_origin, 1U);
+  EXPECT_EQ(assembler.counters().detections_invalid, 4U);
+  EXPECT_EQ(assembler.counters().detections, 3U);
 }
 
 TEST(FrameAssemblerTest, FramesWithoutUsableOdometryAreDroppedAndCounted) {

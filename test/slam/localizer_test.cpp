@@ -80,7 +80,8 @@ TEST_P(LocalizerTest, PoseFromOutsideEndsBeingLost) {
 
 TEST_P(LocalizerTest, UncertaintyFromOutsideCountsHoweverLittleTheOdometryDrifts) {
   SlamConfig config = defaultsOf(Method::kDpmhm);
-  config.back_end.revisit.drift_per_m = 0.001;
+  config.mapper.odometry.learn = false;
+  config.mapper.odometry.noise = {0.001, 0.001, 0.001, 1e-5, 1e-4, 1e-5};
   Slam slam(config, makeStreetClasses(), slam_.snapshot());
   slam.localize();
   slam.beginSession();

@@ -59,6 +59,10 @@ void drive(Map& map, const std::vector<SceneObject>& world, double driven_m, con
   map.apply(poses);
 }
 
+RegistrationPrior priorOf(const Map& map, std::size_t keyframe) {
+  return {map.T_map_keyframe(KeyframeId(keyframe)), 3.5, 1.75, 0.025};
+}
+
 TEST(RevisitSearchTest, AnOffsetIsFoundWithItsLandmarkPairs) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Rng rng(seed);
@@ -66,7 +70,7 @@ TEST(RevisitSearchTest, AnOffsetIsFoundWithItsLandmarkPairs) {
     Map map(0.5);
     drive(map, world, 0.0, Pose::identity(), 1000, rng);
     drive(map, world, 500.0, {expRotation({0.01, -0.02, 0.03}), {2.5, -1.5, 0.4}}, 5000, rng);
-    const auto records = findRevisits(map, KeyframeId(12), 200.0, makeClasses(), {}, RevisitConfig{});
+    const auto records = findRevisits(map, KeyframeId(12), priorOf(map, 12), makeClasses(), {}, RevisitConfig{});
     ASSERT_EQ(records.size(), 1U) << "seed " << seed;
     EXPECT_TRUE(records[0].is_verified) << records[0].reason;
     EXPECT_EQ(records[0].match_keyframe, KeyframeId(4));
@@ -84,7 +88,7 @@ TEST(RevisitSearchTest, APlaceThatWasNotSeenBeforeIsNotAccepted) {
     Map map(0.5);
     drive(map, makeStreet(rng, false), 0.0, Pose::identity(), 1000, rng);
     drive(map, makeStreet(rng, false), 500.0, Pose::identity(), 5000, rng);
-    for (const auto& record : findRevisits(map, KeyframeId(12), 200.0, makeClasses(), {}, RevisitConfig{})) {
+    for (const auto& record : findRevisits(map, KeyframeId(12), priorOf(map, 12), makeClasses(), {}, RevisitConfig{})) {
       EXPECT_FALSE(record.is_verified) << "seed " << seed;
     }
   }
@@ -96,7 +100,7 @@ TEST(RevisitSearchTest, ARegularRowIsAmbiguous) {
   Map map(0.5);
   drive(map, world, 0.0, Pose::identity(), 1000, rng);
   drive(map, world, 500.0, {Eigen::Quaterniond::Identity(), {5.0, 0.0, 0.0}}, 5000, rng);
-  const auto records = findRevisits(map, KeyframeId(12), 400.0, makeClasses(), {}, RevisitConfig{});
+  const auto records = findRevisits(map, KeyframeId(12), priorOf(map, 12), makeClasses(), {}, RevisitConfig{});
   ASSERT_FALSE(records.empty());
   EXPECT_FALSE(records[0].is_verified);
 }
@@ -106,7 +110,7 @@ TEST(RevisitSearchTest, WhatWasJustDrivenIsNoRevisit) {
   const auto world = makeStreet(rng, false);
   Map map(0.5);
   drive(map, world, 0.0, Pose::identity(), 1000, rng);
-  EXPECT_TRUE(findRevisits(map, KeyframeId(7), 70.0, makeClasses(), {}, RevisitConfig{}).empty());
+  EXPECT_TRUE(findRevisits(map, KeyframeId(7), priorOf(map, 7), makeClasses(), {}, RevisitConfig{}).empty());
 }
 
 TEST(RevisitSearchTest, AnEmptySceneHasNoRevisit) {
@@ -114,7 +118,7 @@ TEST(RevisitSearchTest, AnEmptySceneHasNoRevisit) {
   Map map(0.5);
   drive(map, makeStreet(rng, false), 0.0, Pose::identity(), 1000, rng);
   drive(map, {}, 500.0, Pose::identity(), 5000, rng);
-  EXPECT_TRUE(findRevisits(map, KeyframeId(12), 200.0, makeClasses(), {}, RevisitConfig{}).empty());
+  EXPECT_TRUE(findRevisits(map, KeyframeId(12), priorOf(map, 12), makeClasses(), {}, RevisitConfig{}).empty());
 }
 
 }  // namespace

@@ -30,7 +30,9 @@ TEST(SlamTest, OdometryMethodPassesEveryUsableSampleThrough) {
 
 TEST(SlamTest, LatestFrameFollowsTheDetections) {
   Slam slam(defaultsOf(Method::kOdometry), ClassTable{});
-  slam.addDetections(odometryAt(1).stamp, {Detection{}});
+  Detection detection;
+  detection.position_m = {1.0, 2.0, 0.0};
+  slam.addDetections(odometryAt(1).stamp, {detection});
   EXPECT_FALSE(slam.parts().latest_frame);
   slam.addOdometry(odometryAt(1));
   ASSERT_TRUE(slam.parts().latest_frame);

@@ -39,6 +39,9 @@ struct RunResult {
   std::vector<double> step_ms;     ///< wall time of each step: an odometry sample and the detections up to its stamp
   std::vector<double> mapping_ms;  ///< what the mapper took of each: association, hypotheses, fusion; not the back end
   double seconds = 0.0;            ///< wall time of the run, without reading and writing files
+  std::vector<SessionSummary> sessions;         ///< of the map that the run began with, too
+  double detector_range_m = 0.0;                ///< that all lengths follow which are not set
+  std::optional<OdometryModel> odometry_model;  ///< as it was learned; none without map
 };
 
 /// Called now and then with the number of odometry samples done and of all.

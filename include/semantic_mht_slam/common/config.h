@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "semantic_mht_slam/common/length.h"
+
 namespace semantic_mht_slam {
 
 /// Closed interval of allowed numbers.
@@ -27,6 +29,7 @@ struct Field {
   std::string help;     ///< one sentence
   std::function<std::string()> get;
   std::function<std::optional<std::string>(const std::string&)> set;  ///< empty, or what is wrong with the text
+  std::function<void(double)> scale;                                  ///< of a length that is not set; else empty
 };
 
 /// The parameters of one or more config structs. A struct describes itself once, in a function found by
@@ -42,6 +45,8 @@ class Fields {
  public:
   void add(const std::string& name, double& value, const std::string& unit, Range range, const std::string& help);
   void add(const std::string& name, int& value, const std::string& unit, Range range, const std::string& help);
+  /// "auto" or a number.
+  void add(const std::string& name, Length& value, const std::string& unit, Range range, const std::string& help);
   void add(const std::string& name, std::uint64_t& value, const std::string& unit, const std::string& help);
   void add(const std::string& name, bool& value, const std::string& help);
   void add(const std::string& name, std::string& value, const std::string& help);
@@ -92,6 +97,10 @@ struct Setting {
 /// Writes the settings into the described structs; later settings win.
 /// Throws ConfigError with every unknown key, unreadable value and value out of range; then nothing was changed.
 void applySettings(const std::vector<Setting>& settings, Fields& fields);
+
+/// Makes every described length that is not set what it is for a detector that sees `factor` times as far as the
+/// reference (see `Length`).
+void scaleLengths(double factor, const Fields& fields);
 
 /// The described values as YAML, nested by the dots of their keys.
 std::string toYaml(const Fields& fields);

@@ -6,6 +6,7 @@
 #include "semantic_mht_slam/common/stamp.h"
 #include "semantic_mht_slam/map/ids.h"
 #include "semantic_mht_slam/map/scene.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 
 namespace semantic_mht_slam {
 
@@ -27,6 +28,12 @@ struct Keyframe {
   Scene scene = {};       ///< base frame; positions by all detections of the submap and before
   Stamp stamp = 0;
   Pose T_odom_base = Pose::identity();
+  double turned_rad = 0.0;  ///< of the heading, whichever way, since the beginning of the drive
 };
+
+/// What the vehicle moved from the beginning of the drive to a keyframe.
+inline Motion motionTo(const Keyframe& keyframe) {
+  return {keyframe.driven_m, keyframe.turned_rad};
+}
 
 }  // namespace semantic_mht_slam

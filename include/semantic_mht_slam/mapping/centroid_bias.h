@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/models/detection.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 
 namespace semantic_mht_slam {
 
@@ -66,8 +67,7 @@ class CentroidBias {
   CentroidBias(const BiasConfig& config, const ClassTable& classes);
 
   /// Takes one stretch. Landmarks with fewer than `min_observations` are left out, wrong associations are weighed down.
-  /// Odometry noise per square root of a metre.
-  void add(const BiasStretch& stretch, double odometry_stddev_m, double odometry_stddev_rad);
+  void add(const BiasStretch& stretch, const OdometryNoise& odometry);
 
   /// The bias of a class at a range. Zero with zero variance when switched off.
   CentroidBiasEstimate at(ClassIndex class_index, double range_m) const;

@@ -16,8 +16,8 @@ class StateArchive;
 struct DetectionConfig {
   bool missed_detections = true;
   double detection_prob = 0.6;
-  double half_range_m = 35.0;
-  double max_range_m = 50.0;
+  Length half_range_m{35.0};
+  Length max_range_m{50.0};
   double prior_samples = 100.0;
   double visibility_switch_prob = 0.03;
   double birth_prob = 0.3;

@@ -18,7 +18,7 @@ struct CalibrationConfig {
   bool enabled = true;
   int prior_samples = 60;
   int lag_frames = 10;
-  double max_distance_m = 4.0;
+  Length max_distance_m{4.0};
   double min_stddev_m = 0.03;
 };
 

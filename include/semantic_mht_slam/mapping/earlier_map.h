@@ -21,11 +21,11 @@ struct EarlierMap {
 /// Hypotheses over joint alignments against an earlier map.
 struct MapAlignmentConfig {
   bool enabled = true;
-  double first_m = 4.0;
-  double retry_m = 13.0;
+  Length first_m{4.0};
+  Length retry_m{13.0};
   int min_landmarks = 6;
   int max_landmarks = 40;
-  double radius_m = 60.0;
+  Length radius_m{60.0};
   double log_prior_odds = 0.0;
   double max_log_evidence = 2.0;
   double accept_prob = 0.9;

@@ -10,6 +10,7 @@
 #include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/mapping/class_noise.h"
 #include "semantic_mht_slam/mapping/pose_offset.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 
 namespace semantic_mht_slam {
 
@@ -35,8 +36,9 @@ struct TreeInput {
   std::size_t frame = 0;
   SubmapId submap;
   double driven_m = 0.0;                  ///< in this submap
-  double step_m = 0.0;                    ///< driven since the frame before
+  Pose T_submap_last;                     ///< of the frame before, by the odometry
   Pose T_submap_base;                     ///< by the odometry
+  OdometryModel odometry;                 ///< how it errs
   std::vector<Measurement> measurements;  ///< base frame, covariance of the detector
 };
 

@@ -43,7 +43,6 @@ class MultiHypothesisTree {
   void transfer(StateArchive& archive);
 
  private:
-  void predict(MapHypothesis& hypothesis, const TreeInput& input) const;
   void measureFrom(const Pose& T_submap_base, const PoseOffset* offset, const TreeInput& input,
                    std::vector<Measurement>& measurements) const;
   PoseOffset offsetAfter(const FrameInterpretation& interpretation, const TreeInput& input) const;

@@ -14,6 +14,7 @@
 #include "semantic_mht_slam/mapping/hypothesis_tree.h"
 #include "semantic_mht_slam/mapping/landmark_propagation.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/mapping/station_keeping.h"
 #include "semantic_mht_slam/models/frame.h"
 
 namespace semantic_mht_slam {
@@ -58,6 +59,9 @@ class Mapper {
   /// The present submap, or the last one; none before the first.
   SubmapId submap() const { return id_; }
 
+  /// How the odometry errs, as the finished submaps say.
+  const OdometryModel& odometryModel() const { return odometry_.model(); }
+
   /// The detections without the bias of their classes' centroids, and with the noise of their centroids stated, both as
   /// learned so far.
   Detections calibrated(Detections detections) const;
@@ -77,12 +81,17 @@ class Mapper {
   bool learnsConfusion() const;
   void learnConfusion(const std::vector<FusedAssociations>& associations,
                       const std::vector<MixtureLandmark>& landmarks);
+  void learnOdometry(const std::vector<FusedAssociations>& associations);
+  double frameSpacing_m() const;
+  double stationSpacing_m() const;
+  Motion motionWith(const Pose& T_odom_base) const;
   BiasStretch biasStretch(const std::vector<FusedAssociations>& associations) const;
 
   MapperConfig config_;
   ClassTable classes_;
   DetectorCalibration calibration_;
   CentroidBias bias_;
+  OdometryLearning odometry_;
   MultiHypothesisTree tree_;
   LandmarkPropagation propagation_;
   /// Of the present frame, by range; null until a detection there asks for it.
@@ -91,9 +100,10 @@ class Mapper {
   SubmapId id_;
   bool is_open_ = false;
   Pose T_odom_submap_;
-  double length_m_ = 0.0;
+  Motion motion_;                    ///< since the submap began
   std::vector<Frame> frames_;        ///< of this submap, as they came
   std::vector<std::size_t> spaced_;  ///< frames so far apart that each sees another error of a centroid
+  StationKeeping stations_;
 };
 
 }  // namespace semantic_mht_slam

@@ -6,6 +6,7 @@
 #include "semantic_mht_slam/mapping/detector_calibration.h"
 #include "semantic_mht_slam/mapping/duplicate_merging.h"
 #include "semantic_mht_slam/mapping/earlier_map.h"
+#include "semantic_mht_slam/mapping/odometry_learning.h"
 
 namespace semantic_mht_slam {
 
@@ -26,12 +27,12 @@ enum class MeasurementModel {
 /// Likelihoods of the four cases of an association (paper, section II-A) and the gate.
 struct AssociationConfig {
   double gate_prob = 0.999;
-  double max_gate_m = 6.0;
+  Length max_gate_m{6.0};
   CountPrior count_prior = CountPrior::kLinear;
   int count_prior_cap = 20;
   double concentration = 100.0;
   double false_positive_rate = 0.001;
-  double map_volume_m3 = 30000.0;
+  Length map_volume_m3{30000.0, 2};
   ClassModel class_model = ClassModel::kConfusion;
   double confusion_prob = 0.1;
   double confusion_samples = 100.0;
@@ -40,8 +41,8 @@ struct AssociationConfig {
   double false_positive_density = 1.0;
   double outlier_prob = 0.1;
   double outlier_factor = 3.0;
-  double outlier_min_stddev_m = 0.3;
-  double ukf_gate_m = 2.0;
+  Length outlier_min_stddev_m{0.3};
+  Length ukf_gate_m{2.0};
   double split_prob = 0.015;
 };
 
@@ -56,13 +57,13 @@ struct TreeConfig {
   double min_weight = 0.08;
 };
 
-/// Odometry noise, and how long a submap lives.
+/// How long a submap lives.
 struct SubmapConfig {
-  double length_m = 30.0;
-  double odometry_stddev_m = 0.045;
-  double odometry_stddev_rad = 0.0007;
+  Length length_m{30.0};
+  double turn_rad = 6.3;
+  int max_frames = 600;
   bool correct_pose = true;
-  double propagation_m = 120.0;
+  Length propagation_m{120.0};
 };
 
 /// Everything that the mapper needs.
@@ -74,6 +75,7 @@ struct MapperConfig {
   DetectionConfig detection;
   TreeConfig tree;
   SubmapConfig submap;
+  OdometryConfig odometry;
   CalibrationConfig calibration;
   BiasConfig bias;
   MapAlignmentConfig alignment;

@@ -4,6 +4,7 @@
 
 #include "semantic_mht_slam/common/gaussian.h"
 #include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 
 namespace semantic_mht_slam {
 
@@ -25,8 +26,10 @@ Eigen::Matrix<double, 6, 6> stepCov(const PoseOffset& offset, double tilt_stddev
 /// Covariance that the offset's uncertainty gives to a point seen at `lever_m` from the base (submap axes), m^2.
 Eigen::Matrix3d pointCov(const PoseOffset& offset, const Eigen::Vector3d& lever_m);
 
-/// The offset after driving `distance_m`: odometry errors grow with the square root of the distance.
-PoseOffset grown(const PoseOffset& offset, double distance_m, double stddev_m, double stddev_rad);
+/// The offset after a step of the odometry, whose poses are in the submap: an error of the heading turns the step, the
+/// odometry's scale errors are taken off, its noise is added.
+PoseOffset grown(const PoseOffset& offset, const Pose& T_submap_last, const Pose& T_submap_base,
+                 const OdometryModel& odometry);
 
 /// A detection and the landmark that it was assigned to.
 struct OffsetObservation {

@@ -17,6 +17,6 @@ Scene sceneOfFrame(const Detections& detections, const ClassTable& classes);
 /// each other become one object; what was seen once in a long stretch is left out, as clutter and moving objects are.
 /// Throws std::invalid_argument for lists of different lengths and as `sceneOfFrame` does.
 Scene accumulateScene(const std::vector<Detections>& frames, const std::vector<Pose>& T_base_frame,
-                      const ClassTable& classes);
+                      const ClassTable& classes, double min_merge_radius_m = 0.8);
 
 }  // namespace semantic_mht_slam

@@ -14,10 +14,10 @@ enum class RegistrationSearch {
 /// Parameters of `align`, for all who lay points onto points.
 struct RegistrationConfig {
   RegistrationSearch search = RegistrationSearch::kVotes;
-  double max_offset_m = 7.5;
+  Length max_offset_m{7.5};
   double window_sigmas = 3.0;
-  double max_window_m = 30.0;
-  double cell_m = 0.5;
+  Length max_window_m{30.0};
+  Length cell_m{0.5};
   double yaw_step_rad = 0.0175;
   int max_seeds = 10;
   int max_modes = 5;
@@ -26,12 +26,12 @@ struct RegistrationConfig {
   double movable_match_prob = 0.7;
   double match_concentration = 5.0;
   double confusion_prob = 0.05;
-  double noise_floor_m = 0.15;
-  double height_stddev_m = 0.3;
+  Length noise_floor_m{0.15};
+  Length height_stddev_m{0.3};
   double tilt_stddev_rad = 0.02;
-  double density_radius_m = 10.0;
-  double density_height_m = 3.0;
-  double distinct_m = 0.5;
+  Length density_radius_m{10.0};
+  Length density_height_m{3.0};
+  Length distinct_m{0.5};
   double distinct_rad = 0.01;
 };
 

@@ -15,7 +15,7 @@ struct BackEndConfig {
   bool landmark_factors = true;
   int closure_stride = 2;
   double loop_cov_scale = 1.0;
-  double loop_floor_m = 0.1;
+  Length loop_floor_m{0.1};
   double loop_floor_rad = 0.005;
   KeyframeConfig keyframe;
   SubmapEvaluatorConfig evaluator;  ///< `tree` is opened as it stands

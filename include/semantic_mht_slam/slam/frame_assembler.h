@@ -34,6 +34,9 @@ struct InputCounters {
   std::size_t frames_waiting_too_long = 0;  ///< dropped: too many frames wait for odometry
   std::size_t detections = 0;               ///< detections in the frames used
   std::size_t detections_invalid = 0;       ///< dropped: position, covariance, score or size cannot be used
+  std::size_t detections_at_origin = 0;     ///< dropped: exactly 0, 0, 0, where a sensor puts what it has no range of
+  std::size_t covariances_unknown = 0;      ///< left out, the learned noise is used: negative, zero or beyond the range
+  std::size_t frames_standing = 0;          ///< not looked at: from where the vehicle has stood for long
 };
 
 /// Joins odometry and detections by their stamps: a frame gets the odometry pose interpolated to its stamp, as soon as
@@ -53,6 +56,9 @@ class FrameAssembler {
   std::optional<Frame> next();
 
   const InputCounters& counters() const { return counters_; }
+
+  /// A frame that it gave was not looked at, as the vehicle stands.
+  void countStanding() { ++counters_.frames_standing; }
 
   /// Another odometry begins: forgets the one so far and what waits for it; counts go on.
   void beginSession();

@@ -13,13 +13,14 @@ namespace semantic_mht_slam {
 
 /// How a vehicle finds and keeps its pose in a finished map.
 struct LocalizerConfig {
-  double window_m = 20.0;
-  double step_m = 4.0;
-  double agree_m = 2.0;
+  Length window_m{20.0};
+  Length step_m{4.0};
+  Length agree_m{2.0};
   double agree_rad = 0.06;
-  double min_apart_m = 8.0;
-  double max_apart_m = 40.0;
-  double lost_after_m = 100.0;
+  Length min_apart_m{8.0};
+  Length max_apart_m{40.0};
+  Length lost_after_m{100.0};
+  Length merge_radius_m{0.8};
   int known_passes = 8;
 };
 
@@ -31,8 +32,7 @@ void describe(LocalizerConfig& config, Fields& fields);
 /// (`findInMap`). Without success for `lost_after_m` it is lost again.
 class Localizer {
  public:
-  /// `revisit` says how fast the pose drifts.
-  Localizer(const LocalizerConfig& config, const RevisitConfig& revisit) : config_(config), revisit_config_(revisit) {}
+  explicit Localizer(const LocalizerConfig& config) : config_(config) {}
 
   /// Where the vehicle is believed to be, from outside: tracking begins there, with `stddev_m` as its uncertainty.
   void expectAt(const Pose& T_map_odom, double stddev_m);
@@ -46,7 +46,7 @@ class Localizer {
   const std::optional<Pose>& T_map_odom() const { return T_map_odom_; }
 
   /// Driven since the newest fix, or since the pose was told.
-  double sinceFix_m() const { return driven_m_ - fixed_m_; }
+  double sinceFix_m() const { return (driven_ - fixed_).way_m; }
 
   /// The newest fix; only after one.
   const MapFix& fix() const { return *fix_; }
@@ -64,13 +64,12 @@ class Localizer {
   void settle(const Pose& T_map_odom);
 
   LocalizerConfig config_;
-  RevisitConfig revisit_config_;
   std::deque<Frame> window_;
   std::deque<double> window_driven_m_;
-  double driven_m_ = 0.0;
+  Motion driven_;
   double attempted_m_ = 0.0;
-  double fixed_m_ = 0.0;        ///< driven at the last fix
-  double prior_drift_m_ = 0.0;  ///< what the uncertainty of the last fix counts for, as distance
+  Motion fixed_;                ///< driven at the last fix
+  double told_stddev_m_ = 0.0;  ///< uncertainty of a pose that was told, until there is a fix
   std::deque<Find> finds_;
   bool is_located_ = false;
   std::optional<Pose> T_map_odom_;

@@ -7,6 +7,7 @@
 #include "semantic_mht_slam/place/place_recognizer.h"
 #include "semantic_mht_slam/place/submap_evaluator.h"
 #include "semantic_mht_slam/slam/back_end_config.h"
+#include "semantic_mht_slam/slam/place_units.h"
 
 namespace semantic_mht_slam {
 
@@ -38,7 +39,9 @@ struct ClosureQuery {
 class LoopCloser {
  public:
   /// Throws InputError if the evaluator's tree is needed and cannot be used.
-  LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration);
+  /// The detector sees `range_factor` times as far as the reference (see `Length`).
+  LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration,
+             double range_factor = 1.0);
 
   /// Takes the newest submap of the map in. The queries after this are about it.
   void add(const Map& map);
@@ -50,14 +53,20 @@ class LoopCloser {
   /// The sources that are switched on.
   std::vector<ClosureSource> sources() const;
 
-  /// Where a submap begins that is believed to begin at `T_map_submap`, `drifted_m` after its pose was known.
-  SubmapPrediction predict(const Map& map, const Pose& T_map_submap, double drifted_m) const;
+  /// How the odometry errs, as far as that is known.
+  void setOdometry(const OdometryModel& odometry) { odometry_ = odometry; }
+
+  /// Where a submap begins that is believed to begin at `T_map_submap`, whose pose was known when `tied_at_m` were
+  /// driven; `ahead` was driven since the newest keyframe.
+  SubmapPrediction predict(const Map& map, const Pose& T_map_submap, double tied_at_m, const Motion& ahead) const;
 
   /// Where a scene is in the map, by its objects alone; needs a second find that agrees. Empty if it is not recognised.
   std::optional<Pose> locate(const Map& map, const Scene& scene) const;
 
-  /// Where a scene is in the map near an expected pose, `drifted_m` after it was known; empty if that is not clear.
-  std::optional<Pose> findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double drifted_m) const;
+  /// Where a scene is in the map near an expected pose, `motion` after it was known within `stddev_m`; empty if that is
+  /// not clear.
+  std::optional<Pose> findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double stddev_m,
+                               const Motion& motion) const;
 
   /// Of every finished submap.
   const IdVector<SubmapId, SubmapCheck>& checks() const { return checks_; }
@@ -77,6 +86,8 @@ class LoopCloser {
   BackEndConfig config_;
   ClassTable classes_;
   RegistrationConfig registration_;
+  PlaceUnits units_;
+  OdometryModel odometry_;
   SubmapEvaluator evaluator_;
   PlaceRecognizer places_;
   std::vector<KeyframeId> keyframe_of_place_;

@@ -6,7 +6,7 @@
 
 #include "semantic_mht_slam/graph/pose_graph.h"
 #include "semantic_mht_slam/map/map.h"
-#include "semantic_mht_slam/models/odometry_noise.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 #include "semantic_mht_slam/slam/back_end_config.h"
 
 namespace semantic_mht_slam {
@@ -22,10 +22,11 @@ struct GraphStatus {
 /// The pose graph of a map: a node a keyframe, a point a landmark, a factor a verified closure.
 class MapGraph {
  public:
-  MapGraph(const BackEndConfig& config, const OdometryNoise& odometry, const ClassTable& classes);
+  MapGraph(const BackEndConfig& config, const ClassTable& classes);
 
-  /// New keyframes, with what each saw.
-  void add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings);
+  /// New keyframes, with what each saw; how the odometry between them errs.
+  void add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings,
+           const OdometryModel& odometry);
 
   /// The next keyframe follows the ones before by a pose in the map, known within about a metre, not by odometry.
   void goOnAt(const Pose& T_map_odom) { T_map_odom_start_ = T_map_odom; }
@@ -52,13 +53,13 @@ class MapGraph {
   void transfer(StateArchive& archive, const Map& map);
 
  private:
-  PoseNode nodeOf(const Map& map, KeyframeId keyframe, const std::vector<Sighting>& sightings);
+  PoseNode nodeOf(const Map& map, KeyframeId keyframe, const std::vector<Sighting>& sightings,
+                  const OdometryModel& odometry);
   void regroup(const std::vector<std::vector<LandmarkId>>& changed);
   std::vector<ClosureDecision> decisionsOf(const std::vector<LoopDecision>& decisions) const;
   GraphUpdate updateOf(const PoseGraphUpdate& update);
 
   BackEndConfig config_;
-  OdometryNoise odometry_noise_;
   ClassTable classes_;
   PoseGraph graph_;
   GraphStatus status_;

@@ -12,6 +12,12 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
+/// A stretch of one odometry, and whether its place in the map was ever known.
+struct SessionSummary {
+  Stamp begin = 0;
+  bool is_located = false;
+};
+
 /// The odometry of all drives, and where the vehicle was found in the map without being mapped. A session is a stretch
 /// of one odometry.
 class Sessions {
@@ -33,6 +39,9 @@ class Sessions {
 
   /// What the trajectory is put together from: odometry, keyframes and fixes.
   TrajectoryRecord record(const Map& map) const;
+
+  /// All sessions that have odometry.
+  std::vector<SessionSummary> summary(const Map& map) const;
 
   void transfer(StateArchive& archive);
 

@@ -10,14 +10,17 @@
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/mapping/detector_range.h"
 #include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/models/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
 #include "semantic_mht_slam/slam/loop_closer.h"
 #include "semantic_mht_slam/slam/map_graph.h"
 #include "semantic_mht_slam/slam/mode.h"
+#include "semantic_mht_slam/slam/odometry_continuity.h"
 #include "semantic_mht_slam/slam/sessions.h"
 #include "semantic_mht_slam/slam/slam_state.h"
+#include "semantic_mht_slam/slam/standstill.h"
 
 namespace semantic_mht_slam {
 
@@ -47,9 +50,10 @@ SlamConfig defaultsOf(Method method);
 
 void describe(SlamConfig& config, Fields& fields);
 
-/// True if `next` may be the odometry after `last` of the same drive: later, but at most a minute, and no further than
-/// a fast car comes meanwhile.
-bool goesOn(const StampedPose& last, const StampedPose& next);
+/// The configuration with the lengths of a detector that sees `range_factor` times as far as the reference. What
+/// `odometry` begins with is scaled, too, if it is learned: a vehicle of half the size drives half as far for the same
+/// error of its heading.
+SlamConfig fittedTo(const SlamConfig& config, double range_factor);
 
 /// What the estimator is made of, all of which outlives a program in a map file.
 struct SlamParts {
@@ -63,11 +67,20 @@ struct SlamParts {
   Mode mode;
   std::optional<Frame> latest_frame;  ///< the newest one that found its odometry
   SubmapPrediction prediction;        ///< of the open submap
-  double driven_m = 0.0;              ///< up to the newest frame
-  double submap_driven_m = 0.0;       ///< up to the first frame of the open submap
+  Motion driven = {};                 ///< up to the newest frame
+  Motion submap_driven = {};          ///< up to the first frame of the open submap
   double tied_at_m = 0.0;             ///< driven when localization last gave mapping a pose
   double mapping_s = 0.0;             ///< wall time that the mapper took so far (association, hypotheses, fusion)
+  OdometryContinuity continuity = {};
+  Standstill standing = {};
+  DetectorRange detector_range = {};
+  double range_factor = 1.0;        ///< of the detector by the reference, as far as it is known
+  bool is_fitted = false;           ///< the lengths are those of the detector
+  std::vector<Frame> waiting = {};  ///< frames that are mapped when they are
 };
+
+/// Makes mapper, graph and loop closer anew for a configuration whose lengths have changed (see `fittedTo`).
+void fitParts(const SlamConfig& fitted, const ClassTable& classes, SlamParts& parts);
 
 /// The estimator: odometry and detections in, trajectory and map out. Single-threaded; the same input gives the same
 /// result whatever the order in which odometry and detections arrive.
@@ -88,7 +101,11 @@ class Slam {
   /// Everything that is needed to go on from here.
   SlamState snapshot() const;
 
-  /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used.
+  /// True if `next` may be the odometry after the newest of the same drive (see `OdometryContinuity`), within a minute.
+  bool goesOn(const StampedPose& next) const;
+
+  /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used. One that no motion leads
+  /// to from the newest begins a session.
   bool addOdometry(const StampedPose& T_odom_base);
 
   /// What the detector saw at `stamp`, in the base frame. Bad ones are dropped and counted.
@@ -123,6 +140,9 @@ class Slam {
  private:
   void processReadyFrames();
   void process(const Frame& frame);
+  void processOrWait(const Frame& frame);
+  /// The lengths are those of the detector from now on; the frames that waited for it are mapped.
+  void fitToDetector();
   void follow(const Frame& frame);
   void beginSubmap(const Frame& frame);
   void endSubmap();
@@ -131,6 +151,8 @@ class Slam {
   Localizer localizerHere() const;
 
   SlamConfig config_;
+  ClassTable classes_;
+  SlamConfig fitted_;  ///< with the lengths of the detector
   SlamParts parts_;
 };
 

@@ -13,12 +13,12 @@ namespace semantic_mht_slam {
 std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph);
 
 /// What earlier passes know of the surroundings of a submap that begins where `prior` says; what was seen in the newest
-/// `recent_submaps` submaps is of the present pass.
+/// `recent_submaps` submaps is of the present pass. Landmarks are of use within `reach_m`.
 EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, const MapGraph& graph,
-                            std::size_t recent_submaps);
+                            std::size_t recent_submaps, double reach_m);
 
 /// True if a closure ties the newest submap to an earlier pass, and every place of it was passed at least `passes`
-/// times; false for 0.
-bool isPlaceKnown(const Map& map, std::size_t passes);
+/// times within `radius_m`; false for 0.
+bool isPlaceKnown(const Map& map, std::size_t passes, double radius_m);
 
 }  // namespace semantic_mht_slam

@@ -79,8 +79,8 @@ class Converter:
         try:
             return self._objects_of(self._type.parse(data), received)
         except UnfitMessage as problem:
-            self.counts.add(f"messages dropped: the bytes do not fit the definition that came with them ({problem});"
-                            " rebuild publisher and recorder with one version of the message")
+            self.counts.add(f"messages dropped: the bytes do not fit the definition that came with them ({problem}); rebuild"
+                            " publisher and recorder with one version of the message")
         except field_path.MissingValue as missing:
             self.counts.add(f"messages dropped: field '{missing}' is empty")
         return None

@@ -14,7 +14,7 @@ from .options import Options
 
 _WARNING_PERIOD_S = 5.0
 _MOST_WARNINGS = 1000  # texts hold what others send: bounded memory
-_QUEUE = 1000  # as the SLAM node's: a burst until it has taken it
+_QUEUE = 10
 
 
 def options_of_parameters():
@@ -72,8 +72,7 @@ class RelayNode:
         if self._exporter:
             self._map_publisher = rospy.Publisher("map_out", self._exporter.message_class, queue_size=1, latch=True)
             rospy.Subscriber("map", SemanticMap, self._relay_map, queue_size=1)
-        # Without a queue_size nothing is dropped here unseen: what waits, waits at the publisher.
-        rospy.Subscriber("objects_in", rospy.AnyMsg, self._relay, tcp_nodelay=True)
+        rospy.Subscriber("objects_in", rospy.AnyMsg, self._relay, queue_size=_QUEUE)
         self._timer = threading.Thread(target=self._report_forever, daemon=True)
         self._timer.start()
 

@@ -1,0 +1,108 @@
+#include "semantic_mht_slam/mapping/variance_components.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr std::size_t kStretches = 10;  // that are gone through again
+constexpr int kPasses = 4;
+constexpr double kLargestStep = 1.0;
+constexpr double kMostDeviations = 3.0;  // of an error from what the others make of it
+constexpr double kLeastVariance = 1e-14;
+constexpr double kMostUnsure = 1.0;  // variance of a logarithm that adds to the variance itself
+
+}  // namespace
+
+VarianceComponents::VarianceComponents(const Eigen::VectorXd& prior_stddev, double log_stddev,
+                                       const Eigen::VectorXd& effect_stddev)
+    : prior_mean_(2.0 * prior_stddev.array().log()),
+      prior_precision_(Eigen::MatrixXd::Identity(prior_stddev.size(), prior_stddev.size()) /
+                       (4.0 * log_stddev * log_stddev)),
+      effect_information_(effect_stddev.cwiseAbs2().cwiseInverse().asDiagonal()),
+      effect_vector_(Eigen::VectorXd::Zero(effect_stddev.size())),
+      log_variance_(prior_mean_),
+      log_uncertainty_(Eigen::VectorXd::Zero(prior_stddev.size())),
+      effect_(effect_vector_),
+      effect_cov_(effect_stddev.cwiseAbs2().asDiagonal()) {}
+
+void VarianceComponents::add(ErrorInformation stretch) {
+  if (stretch.vector.size() == 0) return;
+  Score unused;
+  if (!score(stretch, unused)) return;
+  stretches_.push_back(std::move(stretch));
+  fit();
+  if (stretches_.size() > kStretches) forgetOldest();
+}
+
+bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) const {
+  const Eigen::MatrixXd& H = stretch.matrix;
+  const Eigen::VectorXd variance = (stretch.design * log_variance_.array().exp().matrix()).cwiseMax(kLeastVariance);
+  Eigen::MatrixXd posterior = H;
+  posterior.diagonal() += variance.cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(posterior);
+  if (factor.info() != Eigen::Success) return false;
+  // Precision of what was measured of the errors, V^-1 = H - H (H + Q^-1)^-1 H, and V^-1 y.
+  const Eigen::MatrixXd whitened = factor.matrixL().solve(H);
+  Eigen::MatrixXd V_inverse = H;
+  V_inverse.noalias() -= whitened.transpose() * whitened;
+  const Eigen::VectorXd V_inverse_y = stretch.vector - H * factor.solve(stretch.vector);
+  const Eigen::MatrixXd V_inverse_effect = V_inverse * stretch.effect;
+  const Eigen::VectorXd u = V_inverse_y - V_inverse_effect * effect_;
+  const Eigen::MatrixXd parts = stretch.design * log_variance_.array().exp().matrix().asDiagonal();
+  const Eigen::VectorXd most = kMostDeviations * kMostDeviations * V_inverse.diagonal().cwiseMax(0.0);
+  score.gradient = 0.5 * parts.transpose() * (u.cwiseAbs2().cwiseMin(most) - V_inverse.diagonal());
+  score.fisher = 0.5 * parts.transpose() * V_inverse.cwiseAbs2() * parts;
+  score.effect_information = stretch.effect.transpose() * V_inverse_effect;
+  score.effect_vector = stretch.effect.transpose() * V_inverse_y;
+  return score.gradient.allFinite() && score.fisher.allFinite() && score.effect_vector.allFinite();
+}
+
+void VarianceComponents::fit() {
+  for (int pass = 0; pass < kPasses; ++pass) {
+    Eigen::VectorXd gradient = prior_precision_ * (prior_mean_ - log_variance_);
+    Eigen::MatrixXd fisher = prior_precision_;
+    Eigen::MatrixXd effect_information = effect_information_;
+    Eigen::VectorXd effect_vector = effect_vector_;
+    for (const ErrorInformation& stretch : stretches_) {
+      Score of;
+      if (!score(stretch, of)) continue;
+      gradient += of.gradient;
+      fisher += of.fisher;
+      effect_information += of.effect_information;
+      effect_vector += of.effect_vector;
+    }
+    const Eigen::MatrixXd uncertainty = fisher.inverse();
+    const Eigen::VectorXd step = uncertainty * gradient;
+    log_variance_ += step / std::max(1.0, step.cwiseAbs().maxCoeff() / kLargestStep);
+    log_uncertainty_ = uncertainty.diagonal();
+    if (effect_.size() == 0) continue;
+    effect_cov_ = effect_information.inverse();
+    effect_ = effect_cov_ * effect_vector;
+  }
+}
+
+/// The oldest stretch becomes part of the priors.
+void VarianceComponents::forgetOldest() {
+  Score of;
+  if (score(stretches_.front(), of)) {
+    const Eigen::VectorXd vector = prior_precision_ * prior_mean_ + of.fisher * log_variance_ + of.gradient;
+    prior_precision_ += of.fisher;
+    prior_mean_ = prior_precision_.inverse() * vector;
+    effect_information_ += of.effect_information;
+    effect_vector_ += of.effect_vector;
+  }
+  stretches_.pop_front();
+}
+
+Eigen::VectorXd VarianceComponents::stddev() const {
+  const Eigen::VectorXd upwards = 0.5 * log_uncertainty_.cwiseMin(kMostUnsure);
+  return (0.5 * (log_variance_ + upwards)).array().exp();
+}
+
+}  // namespace semantic_mht_slam

@@ -1,0 +1,31 @@
+#include "semantic_mht_slam/slam/standstill.h"
+
+#include "semantic_mht_slam/common/state_archive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kFrames = 300;  // that are looked at
+constexpr double kMoved_m = 0.05;
+constexpr double kMoved_rad = 0.01;
+
+}  // namespace
+
+bool Standstill::add(const Pose& T_odom_base) {
+  const bool has_moved = !T_odom_stand_ ||
+                         (T_odom_base.translation_m - T_odom_stand_->translation_m).norm() > kMoved_m ||
+                         angularDistance(T_odom_base.rotation, T_odom_stand_->rotation) > kMoved_rad;
+  if (has_moved) {
+    T_odom_stand_ = T_odom_base;
+    frames_ = 0;
+  }
+  if (frames_ >= kFrames) return true;
+  ++frames_;
+  return false;
+}
+
+void Standstill::transfer(StateArchive& archive) {
+  archive(T_odom_stand_, frames_);
+}
+
+}  // namespace semantic_mht_slam
