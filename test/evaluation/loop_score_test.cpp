@@ -116,7 +116,7 @@ TEST(PairScoreTest, RefusesUnknownFramesAndScoresThatAreNoNumbers) {
 
 TEST(ClosureScoreTest, SequenceZeroHasEightyRevisitedBlocks) {
   const char* data = std::getenv("SEMANTIC_MHT_SLAM_DATA");
-  if (data == nullptr) GTEST_SKIP() << "SEMANTIC_MHT_SLAM_DATA names no data folder";
+  if (data == nullptr || *data == '\0') GTEST_SKIP() << "SEMANTIC_MHT_SLAM_DATA names no data folder";
   const std::vector<Pose> poses = readKittiTrajectory(std::string(data) + "/kitti/00/poses.txt");
   EXPECT_EQ(closureScore(poses, {}).revisited_blocks, 80);
 }

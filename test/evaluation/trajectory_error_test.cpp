@@ -198,7 +198,7 @@ class KittiTrajectoryErrorTest : public ::testing::TestWithParam<KnownError> {};
 
 TEST_P(KittiTrajectoryErrorTest, EqualsThePublishedFigures) {
   const char* data = std::getenv("SEMANTIC_MHT_SLAM_DATA");
-  if (data == nullptr) GTEST_SKIP() << "SEMANTIC_MHT_SLAM_DATA names no data folder";
+  if (data == nullptr || *data == '\0') GTEST_SKIP() << "SEMANTIC_MHT_SLAM_DATA names no data folder";
   const KnownError& known = GetParam();
   const std::string folder = std::string(data) + "/kitti/" + known.sequence + "/";
   const TrajectoryError error =

@@ -14,7 +14,7 @@ namespace {
 /// Folder of the benchmark graphs; empty where SEMANTIC_MHT_SLAM_DATA is not set.
 std::string graphFolder() {
   const char* data = std::getenv("SEMANTIC_MHT_SLAM_DATA");
-  return data == nullptr ? "" : std::string(data) + "/pose_graphs/";
+  return data == nullptr || *data == '\0' ? "" : std::string(data) + "/pose_graphs/";
 }
 
 struct KnownGraph {
