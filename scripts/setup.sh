@@ -82,14 +82,12 @@ configure_and_build() {
   log="$build/configure.log"
   if ! (cd "$source" && cmake -S "$source" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON \
     -DCATKIN_DEVEL_PREFIX="$workspace/devel" -DCMAKE_INSTALL_PREFIX="$workspace/install" \
+    -DSEMANTIC_MHT_SLAM_ROS_FOLDER="$link" \
     -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
     -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) >"$log" 2>&1; then
     tail -n 30 "$log" >&2
     fail "configuring failed; the end of its output is above (all of it: $log)"
   fi
-  # rosrun does not look for programs below the build folder of a package. ROS is told of a folder of links to everything
-  # but the build folder.
-  printf '%s' "$link" >"$workspace/devel/.catkin"
   cmake --build "$build" -- -j"$(nproc)" --no-print-directory all ${tests:+tests} >"$build/build.log" 2>&1 || {
     grep -E -A5 "error:|\*\*\*" "$build/build.log" | head -n 60 >&2 || true
     fail "building failed; the first errors are above (all of it: $build/build.log)"

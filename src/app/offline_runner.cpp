@@ -31,7 +31,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
   const std::size_t known = trajectoryOf(slam).size();
   const bool is_another_drive = start != nullptr && slam.parts().sessions.latestOdometry() &&
-                                !recording.odometry.empty() && !slam.goesOn(recording.odometry.front());
+                                !recording.odometry.empty() && !goesOn(slam, recording.odometry.front());
   if (is_another_drive) slam.beginSession();
   const Stopwatch watch;
   auto frame = recording.detector_frames.begin();

@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/graph/loop_consistency.h"
 
 #include "batch_problem.h"
+#include "solver_steps.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -91,7 +92,7 @@ std::string solveOnce(BatchGraph<kDim>& graph, const std::vector<bool>& use_edge
   BatchProblem<kDim> problem(graph, use_edge, loss.get());
   ceres::Solver::Summary summary;
   problem.solve(solverOptions(options), summary);
-  report.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  report.iterations += iterationsOf(summary);
   report.converged = summary.termination_type == ceres::CONVERGENCE;
   if (!summary.IsSolutionUsable()) return "the solver failed: " + summary.message;
   if (!std::isfinite(summary.final_cost) || !problem.store(graph)) return "the solution is not finite";

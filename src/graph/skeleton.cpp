@@ -9,6 +9,7 @@
 #include <ceres/types.h>
 
 #include "lent_problem.h"
+#include "solver_steps.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -116,7 +117,7 @@ Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);
   Outcome outcome;
-  outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  outcome.iterations = iterationsOf(summary);
   outcome.converged = summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
   outcome.out_of_time = summary.termination_type == ceres::NO_CONVERGENCE && outcome.iterations < max_iterations;
   bool is_finite = std::isfinite(summary.final_cost);

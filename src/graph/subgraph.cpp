@@ -8,6 +8,7 @@
 #include <ceres/solver.h>
 
 #include "lent_problem.h"
+#include "solver_steps.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -194,7 +195,7 @@ Subgraph::Outcome Subgraph::optimize(int max_iterations, double max_seconds, dou
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);
   Outcome outcome;
-  outcome.iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  outcome.iterations = iterationsOf(summary);
   outcome.out_of_time = summary.termination_type == ceres::NO_CONVERGENCE && outcome.iterations < max_iterations;
   const std::vector<double> result = snapshot();
   const bool is_finite = std::all_of(result.begin(), result.end(), [](double value) { return std::isfinite(value); });

@@ -81,9 +81,10 @@ std::vector<std::size_t> PlaceRecognizer::gated(std::size_t query, std::size_t e
     if (config_.drift_gate && distance_m > config_.gate_base_m + drift(query, i)) continue;
     near.emplace_back(distance_m, i);
   }
-  if (config_.drift_gate && near.size() > static_cast<std::size_t>(config_.max_compared)) {
+  const std::size_t max_compared = config_.max_compared;
+  if (config_.drift_gate && near.size() > max_compared) {
     std::nth_element(near.begin(), near.begin() + config_.max_compared, near.end());
-    near.resize(config_.max_compared);
+    near.resize(max_compared);
   }
   std::vector<std::size_t> result;
   for (const auto& place : near) result.push_back(place.second);
@@ -97,7 +98,7 @@ std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t
   for (const std::size_t i : places) {
     ranked.emplace_back(-descriptorSimilarity(query.descriptor, places_[i].descriptor), i);
   }
-  const std::size_t count = std::min(ranked.size(), static_cast<std::size_t>(config_.max_candidates));
+  const std::size_t count = std::min<std::size_t>(ranked.size(), config_.max_candidates);
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
   ranked.resize(count);
   std::vector<PlaceMatch> matches;
@@ -116,10 +117,11 @@ std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t
 
 std::vector<PlaceMatch> PlaceRecognizer::comparePaper(const Keyframe& query, std::size_t query_index,
                                                       const ClassHistogram& submap_histogram) {
+  const std::size_t max_candidates = config_.max_candidates;
   std::vector<PlaceMatch> matches;
   for (const PaperCandidate& candidate : paper_->query(query, submap_histogram)) {
     if (candidate.submap >= query.submap) continue;
-    if (matches.size() == static_cast<std::size_t>(config_.max_candidates)) break;
+    if (matches.size() == max_candidates) break;
     PlaceMatch match;
     if (candidate.refusal == PlaceRefusal::kNone) match = verify(places_[query_index], candidate.place);
     if (candidate.refusal != PlaceRefusal::kNone) match.refusal = candidate.refusal;

@@ -85,7 +85,8 @@ double rivalSimilarity(const std::vector<SceneAlignment>& alignments, const Plac
 }
 
 PlaceRefusal checkAlignment(const SceneAlignment& alignment, double rival_score, const PlaceConfig& config) {
-  if (static_cast<int>(alignment.mode.pairs.size()) < config.min_inliers) return PlaceRefusal::kFewInliers;
+  const std::size_t min_inliers = config.min_inliers;
+  if (alignment.mode.pairs.size() < min_inliers) return PlaceRefusal::kFewInliers;
   if (alignment.pair_classes < config.min_classes) return PlaceRefusal::kFewClasses;
   if (alignment.spread_m < config.min_spread_m) return PlaceRefusal::kOnALine;
   if (largestHorizontalStddev(alignment.mode.cov) > config.max_stddev_m ||

@@ -69,8 +69,9 @@ Match matchOf(const Point& a, const Point& b, double scaled_distance, const Scen
 SparseCostMatrix costsOf(const std::vector<Point>& rows, const std::vector<Point>& columns, double max_distance_m) {
   const auto column_count = static_cast<int>(columns.size());
   SparseCostMatrix costs;
-  costs.clear(column_count + static_cast<int>(rows.size()));
-  for (int i = 0; i < static_cast<int>(rows.size()); ++i) {
+  const auto row_count = static_cast<int>(rows.size());
+  costs.clear(column_count + row_count);
+  for (int i = 0; i < row_count; ++i) {
     costs.addRow();
     for (int j = 0; j < column_count; ++j) {
       const double distance_m = (rows[i].position_m - columns[j].position_m).norm();
@@ -86,7 +87,7 @@ Match matchOf(const std::vector<Point>& rows, const std::vector<Point>& columns,
   const auto assignment = AssignmentSolver().solve(costs);
   Match sum;
   for (int i = 0; i < costs.rows(); ++i) {
-    const auto column = static_cast<std::size_t>(assignment->column_for_row[i]);
+    const std::size_t column = assignment->column_for_row[i];
     if (column >= columns.size()) {
       sum.score += config.formula == PairScoreFormula::kAsPrinted ? 1.0 : 0.0;
       continue;
@@ -123,7 +124,8 @@ template <typename Score>
 Match betterWayRound(const Scene& a, const Scene& b, const SceneScoreConfig& config, const Score& score) {
   const Scene& smaller = a.objects.size() <= b.objects.size() ? a : b;
   const Scene& larger = a.objects.size() <= b.objects.size() ? b : a;
-  if (smaller.objects.empty() || static_cast<int>(smaller.objects.size()) < config.min_objects) return {};
+  const std::size_t min_objects = config.min_objects;
+  if (smaller.objects.empty() || smaller.objects.size() < min_objects) return {};
   const bool is_principal = config.frame == SceneFrame::kPrincipal;
   std::vector<Point> turned = is_principal ? principalPointsOf(smaller) : pointsOf(smaller);
   const std::vector<Point> fixed = is_principal ? principalPointsOf(larger) : pointsOf(larger);

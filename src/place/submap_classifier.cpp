@@ -52,15 +52,16 @@ bool isUsable(const cv::ml::DTrees& tree) {
   const auto& nodes = tree.getNodes();
   const auto& splits = tree.getSplits();
   const auto nodes_end = static_cast<int>(nodes.size());
+  const auto splits_end = static_cast<int>(splits.size());
   if (tree.isClassifier() || tree.getVarCount() != kFeatures || tree.getRoots().size() != 1) return false;
   return nodes_end > 0 && std::all_of(nodes.begin(), nodes.end(), [&](const cv::ml::DTrees::Node& node) {
            if (!(node.value >= 0.0 && node.value <= 1.0)) return false;
            if (node.split < 0) return true;
-           const auto parent = static_cast<int>(&node - nodes.data());
+           const std::ptrdiff_t parent = &node - nodes.data();
            const auto is_child = [&](int child) {
              return child > parent && child < nodes_end;
            };  // downwards: no circle
-           return node.split < static_cast<int>(splits.size()) && is_child(node.left) && is_child(node.right);
+           return node.split < splits_end && is_child(node.left) && is_child(node.right);
          });
 }
 
@@ -100,8 +101,9 @@ SubmapClassifier SubmapClassifier::train(const std::vector<LabelledSubmap>& samp
   if (good == 0 || good == static_cast<std::ptrdiff_t>(samples.size())) {
     throw std::invalid_argument("a tree needs good and other submaps to learn from");
   }
-  cv::Mat features(static_cast<int>(samples.size()), kFeatures, CV_32F);
-  cv::Mat labels(static_cast<int>(samples.size()), 1, CV_32F);
+  const auto rows = static_cast<int>(samples.size());
+  cv::Mat features(rows, kFeatures, CV_32F);
+  cv::Mat labels(rows, 1, CV_32F);
   for (int i = 0; i < features.rows; ++i) {
     fillRow(samples[i].features, features.ptr<float>(i));
     labels.at<float>(i) = samples[i].is_good ? 1.0F : 0.0F;

@@ -14,14 +14,14 @@ namespace {
 constexpr double kSignatureRadius_m = 30.0;
 constexpr double kSignatureBin_m = 2.0;
 constexpr int kSignatureBins = 15;
-constexpr int kCandidatesPerDetection = 4;
+constexpr std::size_t kCandidatesPerDetection = 4;
 constexpr int kMaxCliques = 3;
 constexpr double kMinDistance_m = 1.0;
 constexpr double kToleranceSigmas = 1.5;
 constexpr long kCliqueSteps = 3000;
 
 /// What stands around a point: counts by class and distance, each spread over the two nearest bins, unit length.
-Eigen::VectorXd signature(const std::vector<LevelledPoint>& points, const LevelledPoint& point, int classes) {
+Eigen::VectorXd signature(const std::vector<LevelledPoint>& points, const LevelledPoint& point, Eigen::Index classes) {
   Eigen::VectorXd bins = Eigen::VectorXd::Zero(classes * kSignatureBins);
   for (const LevelledPoint& other : points) {
     const double distance_m = (other.position_m - point.position_m).head<2>().norm();
@@ -36,7 +36,7 @@ Eigen::VectorXd signature(const std::vector<LevelledPoint>& points, const Levell
   return norm > 0.0 ? Eigen::VectorXd(bins / norm) : bins;
 }
 
-std::vector<Eigen::VectorXd> signatures(const std::vector<LevelledPoint>& points, int classes) {
+std::vector<Eigen::VectorXd> signatures(const std::vector<LevelledPoint>& points, Eigen::Index classes) {
   std::vector<Eigen::VectorXd> result;
   for (const LevelledPoint& point : points) result.push_back(signature(points, point, classes));
   return result;
@@ -62,20 +62,25 @@ bool keepsDistance(const RegistrationProblem& problem, const Correspondence& a, 
 
 }  // namespace
 
-std::vector<Correspondence> findCorrespondences(const RegistrationProblem& problem, int per_detection) {
-  const int classes = static_cast<int>(problem.is_static.size());
+std::vector<Correspondence> findCorrespondences(const RegistrationProblem& problem, std::size_t per_detection) {
+  const Eigen::Index classes = problem.is_static.size();
   const std::vector<Eigen::VectorXd> of_detections = signatures(problem.detections, classes);
   const std::vector<Eigen::VectorXd> of_landmarks = signatures(problem.landmarks, classes);
   std::vector<Correspondence> result;
-  for (std::size_t i = 0; i < problem.detections.size(); ++i) {
+  Correspondence pair;
+  for (const Eigen::VectorXd& of_detection : of_detections) {
     std::vector<std::pair<double, int>> ranked;  // the most alike first
-    for (const PairCandidate& candidate : problem.candidates[i]) {
+    for (const PairCandidate& candidate : problem.candidates[pair.detection]) {
       if (!candidate.is_same_class) continue;
-      ranked.emplace_back(-of_detections[i].dot(of_landmarks[candidate.landmark]), candidate.landmark);
+      ranked.emplace_back(-of_detection.dot(of_landmarks[candidate.landmark]), candidate.landmark);
     }
     std::sort(ranked.begin(), ranked.end());
-    if (static_cast<int>(ranked.size()) > per_detection) ranked.resize(per_detection);
-    for (const auto& candidate : ranked) result.push_back({static_cast<int>(i), candidate.second});
+    if (ranked.size() > per_detection) ranked.resize(per_detection);
+    for (const auto& candidate : ranked) {
+      pair.landmark = candidate.second;
+      result.push_back(pair);
+    }
+    ++pair.detection;
   }
   return result;
 }

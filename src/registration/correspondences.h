@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "problem.h"
@@ -14,7 +15,7 @@ struct Correspondence {
 
 /// For each detection the `per_detection` landmarks of its class whose neighbours, by class and distance, are most
 /// alike. Most are wrong.
-std::vector<Correspondence> findCorrespondences(const RegistrationProblem& problem, int per_detection);
+std::vector<Correspondence> findCorrespondences(const RegistrationProblem& problem, std::size_t per_detection);
 
 /// The state that brings corresponding points onto each other with least squares.
 PlanarState motionOf(const RegistrationProblem& problem, const std::vector<Correspondence>& correspondences);

@@ -68,7 +68,7 @@ std::vector<ClassLandmarks> landmarksByClass(const RegistrationProblem& problem,
   for (std::size_t c = 0; c < problem.is_static.size(); ++c) {
     ClassLandmarks known{end, end, {}};
     for (; end != landmarks.end() && end->class_index == static_cast<ClassIndex>(c); ++end) {
-      const Spread& spread = spreads[static_cast<std::size_t>(end - landmarks.begin())];
+      const Spread& spread = spreads[end - landmarks.begin()];
       known.farthest.det = std::min(known.farthest.det, spread.det);
       known.farthest.largest_variance_m2 = std::max(known.farthest.largest_variance_m2, spread.largest_variance_m2);
     }
@@ -88,7 +88,7 @@ std::vector<double> classDensities(const RegistrationProblem& problem, const std
   std::vector<int> neighbours(by_class.size(), 0);
   const std::vector<LevelledPoint>& centres = problem.prior.is_open ? problem.landmarks : problem.detections;
   for (const LevelledPoint& centre : centres) {
-    const auto c = static_cast<std::size_t>(centre.class_index);
+    const ClassIndex c = centre.class_index;
     ++counted[c];
     const double x_end_m = centre.position_m.x() + radius_m;
     Points landmark = by_class[c].firstFrom(centre.position_m.x() - radius_m);
@@ -132,7 +132,7 @@ std::vector<PairCandidate> findCandidates(const RegistrationProblem& problem, co
   std::vector<PairCandidate> candidates;
   if (problem.prior.is_open) candidates.reserve(problem.landmarks.size());
   for (std::size_t c = 0; c < search.by_class.size(); ++c) {
-    const double log_class_prob = search.log_class_probs[c][static_cast<std::size_t>(detection.class_index)];
+    const double log_class_prob = search.log_class_probs[c][detection.class_index];
     const ClassLandmarks& known = search.by_class[c];
     const double farthest_m = reach(spread, known.farthest, log_odds + log_class_prob);
     if (log_class_prob == kImpossible || farthest_m <= 0.0) continue;
@@ -146,8 +146,7 @@ std::vector<PairCandidate> findCandidates(const RegistrationProblem& problem, co
       candidate.landmark = static_cast<int>(landmark - problem.landmarks.begin());
       candidate.is_same_class = static_cast<ClassIndex>(c) == detection.class_index;
       candidate.log_odds = log_odds + log_class_prob;
-      candidate.reach_m =
-          reach(spread, search.spreads[static_cast<std::size_t>(candidate.landmark)], candidate.log_odds);
+      candidate.reach_m = reach(spread, search.spreads[candidate.landmark], candidate.log_odds);
       if (candidate.reach_m > 0.0 && isWithin(gap_m, closable_m, candidate.reach_m)) candidates.push_back(candidate);
     }
   }
@@ -165,7 +164,7 @@ std::vector<std::vector<PairCandidate>> pairCandidates(const RegistrationProblem
   search.log_class_probs = logClassProbs(problem.is_static, config.confusion_prob);
   std::vector<std::vector<PairCandidate>> candidates;
   for (const LevelledPoint& detection : problem.detections) {
-    const auto c = static_cast<std::size_t>(detection.class_index);
+    const ClassIndex c = detection.class_index;
     const double match_prob = problem.is_static[c] ? config.static_match_prob : config.movable_match_prob;
     const double log_odds = std::log(match_prob / (1.0 - match_prob)) - std::log(search.densities[c]);
     candidates.push_back(findCandidates(problem, search, detection, log_odds));

@@ -39,7 +39,7 @@ struct Voter {
 /// what `points` say.
 std::vector<Voter> voters(const std::vector<LevelledPoint>& points, const std::vector<double>& extra_variance_m2) {
   const auto pairVariance = [&](const Voter& voter) {
-    return voter.variance_m2 + extra_variance_m2[static_cast<std::size_t>(voter.point->class_index)];
+    return voter.variance_m2 + extra_variance_m2[voter.point->class_index];
   };
   std::vector<Voter> result;
   for (const LevelledPoint& point : points) {
@@ -82,14 +82,16 @@ struct PairVote {
   Eigen::Vector2d at_m;
   double in_first = 0.0;
   double in_second = 0.0;
-  int next = -1;  ///< vote with the same first layer
+  std::ptrdiff_t next = -1;  ///< vote with the same first layer
 };
 
 /// The votes by the first of their layers. Their order does not matter: what is summed up are integers.
 class VotesByLayer {
  public:
+  using Index = std::ptrdiff_t;
+
   VotesByLayer(const RegistrationProblem& problem, const VoteGrid& grid)
-      : max_offset_m_(problem.prior.window(0)), newest_(static_cast<std::size_t>(grid.layers()), -1) {}
+      : max_offset_m_(problem.prior.window(0)), newest_(grid.layers(), -1) {}
 
   void add(const Segment& detections, const Segment& landmarks, double tolerance_m) {
     const double weight = 1.0 / (kSharpest_m + tolerance_m);
@@ -105,26 +107,23 @@ class VotesByLayer {
       const double place = (turns - std::floor(turns)) * static_cast<double>(newest_.size());
       const std::size_t first = std::min(newest_.size() - 1, static_cast<std::size_t>(place));
       const double part = place - static_cast<double>(first);
+      const Index index = votes_.size();
       votes_.push_back({offset_m, weight * (1.0 - part), weight * part, newest_[first]});
-      newest_[first] = static_cast<int>(votes_.size()) - 1;
+      newest_[first] = index;
     }
   }
 
   void cast(int layer, VoteGrid& grid) const {
-    const int layers = static_cast<int>(newest_.size());
-    for (int v = newestOf(layer); v >= 0; v = vote(v).next) grid.addShared(vote(v).at_m, vote(v).in_first);
-    for (int v = newestOf((layer + layers - 1) % layers); v >= 0; v = vote(v).next) {
-      grid.addShared(vote(v).at_m, vote(v).in_second);
+    for (Index v = newest_[layer]; v >= 0; v = votes_[v].next) grid.addShared(votes_[v].at_m, votes_[v].in_first);
+    for (Index v = newest_[(layer + newest_.size() - 1) % newest_.size()]; v >= 0; v = votes_[v].next) {
+      grid.addShared(votes_[v].at_m, votes_[v].in_second);
     }
   }
 
  private:
-  int newestOf(int layer) const { return newest_[static_cast<std::size_t>(layer)]; }
-  const PairVote& vote(int index) const { return votes_[static_cast<std::size_t>(index)]; }
-
   double max_offset_m_;
   std::vector<PairVote> votes_;
-  std::vector<int> newest_;  ///< of each first layer; -1: none
+  std::vector<Index> newest_;  ///< of each first layer; -1: none
 };
 
 }  // namespace

@@ -43,12 +43,14 @@ PointVote makeVote(const RegistrationProblem& problem, int detection, const Pair
 
 std::vector<PlanarState> guessByPoints(const RegistrationProblem& problem, int count) {
   std::vector<PointVote> votes;
-  for (std::size_t i = 0; i < problem.candidates.size(); ++i) {
-    for (const PairCandidate& candidate : problem.candidates[i]) {
+  int of_detection = 0;
+  for (const std::vector<PairCandidate>& candidates : problem.candidates) {
+    for (const PairCandidate& candidate : candidates) {
       if (!candidate.is_same_class) continue;
-      const PointVote vote = makeVote(problem, static_cast<int>(i), candidate);
+      const PointVote vote = makeVote(problem, of_detection, candidate);
       if (vote.log_peak_odds > 0.0) votes.push_back(vote);
     }
+    ++of_detection;
   }
   if (votes.empty()) return {};
   VoteGrid grid(problem);

@@ -102,7 +102,7 @@ void addTilt(double tilt_stddev_rad, std::vector<LevelledPoint>& detections) {
 void addPairErrors(const std::vector<double>& extra_variance_m2, double height_stddev_m,
                    std::vector<LevelledPoint>& landmarks) {
   for (LevelledPoint& landmark : landmarks) {
-    landmark.cov_m2.diagonal().array() += extra_variance_m2[static_cast<std::size_t>(landmark.class_index)];
+    landmark.cov_m2.diagonal().array() += extra_variance_m2[landmark.class_index];
     landmark.cov_m2(2, 2) += height_stddev_m * height_stddev_m;
   }
 }

@@ -117,18 +117,20 @@ void Refinement::addCoarsePairs(int index, const PlanarState& state, const Eigen
 void Refinement::match(const PlanarState& state, bool is_coarse) {
   pairs_.clear();
   pair_of_entry_.clear();
-  costs_.clear(static_cast<int>(problem_.landmarks.size() + problem_.detections.size()));
+  const auto landmarks = static_cast<int>(problem_.landmarks.size());
+  const auto detections = static_cast<int>(problem_.detections.size());
+  costs_.clear(landmarks + detections);
   const Eigen::Matrix3d turn = headingRotation(state(3));
-  for (int i = 0; i < static_cast<int>(problem_.detections.size()); ++i) {
-    const int first = static_cast<int>(pairs_.size());
+  for (int i = 0; i < detections; ++i) {
+    const std::size_t first = pairs_.size();
     is_coarse ? addCoarsePairs(i, state, turn) : addPairs(i, state, turn);
-    if (static_cast<int>(pairs_.size()) == first) continue;
+    if (pairs_.size() == first) continue;
     costs_.addRow();
-    for (int p = first; p < static_cast<int>(pairs_.size()); ++p) {
+    for (std::size_t p = first; p < pairs_.size(); ++p) {
       costs_.add(pairs_[p].landmark, -pairs_[p].log_odds);
       pair_of_entry_.push_back(p);
     }
-    costs_.add(static_cast<int>(problem_.landmarks.size()) + i, 0.0);  // none
+    costs_.add(landmarks + i, 0.0);  // none
     pair_of_entry_.push_back(-1);
   }
   matches_.clear();
@@ -150,7 +152,7 @@ PlanarState Refinement::step(const PlanarState& state) const {
 }
 
 bool Refinement::isDetermined() const {
-  if (static_cast<int>(matches_.size()) < config_.min_matches) return false;
+  if (matches_.size() < min_matches_) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(
       problem_.prior.stddev.asDiagonal() * dataInformation(matches_) * problem_.prior.stddev.asDiagonal(),
       Eigen::EigenvaluesOnly);
@@ -170,7 +172,7 @@ bool Refinement::isCovered(const LevelledPoint& detection, const PlanarState& st
 /// distribution), as much of a frame may be new or hidden together.
 double Refinement::logShareCorrection(bool is_static, const PlanarState& state) const {
   const auto isOfKind = [&](const LevelledPoint& detection) {
-    return problem_.is_static[static_cast<std::size_t>(detection.class_index)] == is_static;
+    return problem_.is_static[detection.class_index] == is_static;
   };
   int matched = 0;
   for (const WeighedPair& match : matches_) matched += isOfKind(problem_.detections[match.detection]);
@@ -201,7 +203,7 @@ std::optional<LocalOptimum> Refinement::refine(const PlanarState& seed) {
   PlanarState state = seed;
   for (int i = 0; i < kMaxSteps; ++i) {
     match(state, i < kCoarseSteps);
-    if (static_cast<int>(matches_.size()) < config_.min_matches) return std::nullopt;
+    if (matches_.size() < min_matches_) return std::nullopt;
     // Even without any residual these pairs would not be likelier than "not here".
     if (i == kCoarseSteps && logEvidenceWithoutResiduals(state) < 0.0) return std::nullopt;
     const PlanarState change = step(state);

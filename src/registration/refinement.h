@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct LocalOptimum {
 class Refinement {
  public:
   Refinement(const RegistrationProblem& problem, const RegistrationConfig& config)
-      : problem_(problem), config_(config) {}
+      : problem_(problem), config_(config), min_matches_(config.min_matches) {}
 
   /// Gauss-Newton steps on optimal one-to-one assignments, the first ones under a covariance that covers the coarseness
   /// of the seed. Empty if too few matches remain or they leave the state open.
@@ -53,9 +54,10 @@ class Refinement {
 
   const RegistrationProblem& problem_;
   const RegistrationConfig& config_;
-  std::vector<WeighedPair> pairs_;    // with positive odds, by detection
-  std::vector<WeighedPair> matches_;  // the pairs of the assignment
-  std::vector<int> pair_of_entry_;    // of the cost matrix; -1 for "none"
+  std::size_t min_matches_;
+  std::vector<WeighedPair> pairs_;             // with positive odds, by detection
+  std::vector<WeighedPair> matches_;           // the pairs of the assignment
+  std::vector<std::ptrdiff_t> pair_of_entry_;  // of the cost matrix; -1 for "none"
   SparseCostMatrix costs_;
   AssignmentSolver solver_;
   Assignment assignment_;

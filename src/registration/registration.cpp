@@ -41,7 +41,8 @@ std::vector<LocalOptimum> findModes(const RegistrationProblem& problem, const Re
   }
   std::stable_sort(modes.begin(), modes.end(),
                    [](const LocalOptimum& a, const LocalOptimum& b) { return a.log_evidence > b.log_evidence; });
-  if (static_cast<int>(modes.size()) > config.max_modes) modes.resize(static_cast<std::size_t>(config.max_modes));
+  const std::size_t max_modes = config.max_modes;
+  if (modes.size() > max_modes) modes.resize(max_modes);
   return modes;
 }
 
@@ -62,11 +63,11 @@ std::optional<RegistrationMode> modeOf(const LocalOptimum& optimum, const Regist
   for (const WeighedPair& match : optimum.matches) {
     const int in_a = problem.landmarks[match.landmark].index;
     const int in_b = problem.detections[match.detection].index;
-    const RegistrationPoint& point_a = a[static_cast<std::size_t>(in_a)];
-    const RegistrationPoint& point_b = b[static_cast<std::size_t>(in_b)];
+    const RegistrationPoint& point_a = a[in_a];
+    const RegistrationPoint& point_b = b[in_b];
     PointPair pair{point_a.position_m, point_b.position_m, point_a.cov_m2 + R * point_b.cov_m2 * R.transpose(),
                    point_a.cov_m2, rightProb(match)};
-    pair.cov_m2.diagonal().array() += problem.extra_variance_m2[static_cast<std::size_t>(point_a.class_index)];
+    pair.cov_m2.diagonal().array() += problem.extra_variance_m2[point_a.class_index];
     pair.cov_m2(2, 2) += config.height_stddev_m * config.height_stddev_m;
     pairs.push_back(pair);
     mode.pairs.push_back({in_a, in_b, pair.weight});

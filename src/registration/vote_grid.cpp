@@ -66,12 +66,13 @@ VoteGrid::VoteGrid(const RegistrationProblem& problem)
       yaw_step_rad_(prior_.is_open ? M_PI / half_turns_ : problem.yaw_step_rad),
       layers_(2 * half_turns_ + (prior_.is_open ? 0 : 1)),
       side_(2 * (half_side_ + kMargin) + 1),
-      best_voter_(static_cast<std::size_t>(side_) * side_, -1),
-      best_score_(static_cast<std::size_t>(side_) * side_, 0) {}
+      cells_in_row_(side_),
+      best_voter_(cells_in_row_ * cells_in_row_, -1),
+      best_score_(cells_in_row_ * cells_in_row_, 0) {}
 
 /// An open heading goes round: there, the last layer is cast before the first one again, and the first after the last.
 std::vector<PlanarState> VoteGrid::peaks(int count, const CastVotes& votes) {
-  HighestPeaks highest(static_cast<std::size_t>(count));
+  HighestPeaks highest(count);
   const int around = prior_.is_open ? 1 : 0;
   for (int layer = -around; layer < layers_ + around; ++layer) {
     cast(layer, votes);

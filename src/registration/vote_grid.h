@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -42,8 +43,8 @@ class VoteGrid {
   static constexpr int kMargin = 1;
   static constexpr int kStretch = 32;
 
-  std::size_t cellOf(int y, int x) const { return static_cast<std::size_t>(y) * side_ + x; }
-  std::vector<std::int32_t>& scores(int layer) { return scores_[static_cast<std::size_t>(layer + 1) % scores_.size()]; }
+  std::size_t cellOf(int y, int x) const { return y * cells_in_row_ + x; }
+  std::vector<std::int32_t>& scores(int layer) { return scores_[(layer + 1) % scores_.size()]; }
   void cast(int layer, const CastVotes& votes);
   static void addRow(float at_row, float scale, float first_dx, int count, std::int32_t voter,
                      std::int32_t* __restrict best_voter, std::int32_t* __restrict best_score,
@@ -60,6 +61,7 @@ class VoteGrid {
   double yaw_step_rad_;
   int layers_;
   int side_;
+  std::size_t cells_in_row_;
   int cast_layer_ = 0;
   int voters_before_ = 0;  ///< in the layers before, so that voters of different layers are different
   int max_voter_ = 0;

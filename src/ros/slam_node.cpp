@@ -164,7 +164,7 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
 
 void SlamNode::beginSessionUnlessGoingOn(const nav_msgs::Odometry& message) {
   const StampedPose next{toStamp(message.header.stamp), fromMessage(message.pose.pose)};
-  if (slam_->goesOn(next)) return;
+  if (goesOn(*slam_, next)) return;
   ROS_INFO("the odometry does not go on where the loaded map ends: looking for the place in the map");
   slam_->beginSession();
 }

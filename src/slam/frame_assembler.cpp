@@ -69,7 +69,8 @@ void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
   counters_.detections_at_origin += removeAtOrigin(detections);
   counters_.detections_invalid += removeUnusable(detections);
   waiting_.push_back({index, stamp, std::move(detections)});
-  if (static_cast<int>(waiting_.size()) > config_.max_waiting_frames) {
+  const std::size_t most = config_.max_waiting_frames;
+  if (waiting_.size() > most) {
     waiting_.pop_front();
     ++counters_.frames_waiting_too_long;
   }

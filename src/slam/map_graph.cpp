@@ -8,6 +8,7 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr int kMoreSolutions = 3;         // after one that took closures back
 constexpr double kSessionStddev_m = 1.0;  // of a pose by localization
 constexpr double kSessionStddev_rad = 0.03;
 constexpr double kLeastStep_m = 1e-3;  // of an edge between keyframes: one at a stop has an inverse, too
@@ -88,6 +89,15 @@ GraphUpdate MapGraph::optimize(const std::vector<std::vector<LandmarkId>>& chang
 GraphUpdate MapGraph::optimizeFully(const std::vector<std::vector<LandmarkId>>& changed) {
   regroup(changed);
   return updateOf(graph_.optimizeFully());
+}
+
+void MapGraph::settle(Map& map, bool is_whole) {
+  map.apply(review(map));
+  for (int solution = 0; solution <= kMoreSolutions; ++solution) {
+    const auto changed = map.takeChanges();
+    map.apply(is_whole ? optimizeFully(changed) : optimize(changed));
+    if (map.identity().changedNames().empty()) return;
+  }
 }
 
 void MapGraph::regroup(const std::vector<std::vector<LandmarkId>>& changed) {

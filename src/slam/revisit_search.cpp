@@ -96,8 +96,8 @@ std::optional<LoopClosureRecord> layOnto(const Map& map, const std::vector<Keyfr
   record.cov = best.cov;
   record.score = best.log_evidence;
   for (const RegisteredPair& pair : best.pairs) {
-    const auto in_scene = static_cast<std::size_t>(pair.b);
-    const auto in_pass = static_cast<std::size_t>(pair.a);
+    const std::size_t in_scene = pair.b;
+    const std::size_t in_pass = pair.a;
     const Eigen::Vector3d apart_m = best.T_a_b * seen[in_scene].position_m - pass.points[in_pass].position_m;
     if (apart_m.head<2>().norm() > config.pair_distance_m) continue;
     ++record.inliers;

@@ -23,9 +23,6 @@ constexpr double kSamePlace = 1.0 / 6.0;
 
 constexpr double kMaxPause_s = 60.0;
 
-/// Solutions after one that took closures back, so that what they had joined comes apart.
-constexpr int kMoreSolutions = 3;
-
 /// Submaps whose landmarks the mapper itself may carry on into the present one.
 std::size_t recentSubmaps(const SlamConfig& config) {
   const SubmapConfig& submap = config.mapper.submap;
@@ -48,16 +45,33 @@ SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
   return parts;
 }
 
+/// A localizer that begins where the odometry is by its present correction.
+Localizer localizerHere(const Pose& T_map_odom, const SlamConfig& fitted) {
+  Localizer localizer(fitted.localization);
+  localizer.expectAt(T_map_odom, 0.0);
+  return localizer;
+}
+
+/// Begins a submap at a frame, which is expected at `T_map_base`.
+void beginSubmap(const Frame& frame, const Pose& T_map_base, const SlamConfig& fitted, SlamParts& parts) {
+  const double tied_at_m = std::max(parts.tied_at_m, parts.map.closedAt_m());
+  const Motion ahead = parts.map.keyframes().empty()
+                           ? Motion{}
+                           : motionOf(parts.map.keyframes().back().T_odom_base.inverse() * frame.T_odom_base);
+  parts.prediction = parts.closer->predict(parts.map, T_map_base, tied_at_m, ahead);
+  parts.submap_driven = parts.driven;
+  EarlierMap earlier;
+  if (fitted.back_end.close_loops) {
+    earlier = earlierMapAround(parts.prediction.prior, parts.map, parts.graph, recentSubmaps(fitted),
+                               fitted.mapper.alignment.radius_m);
+  }
+  parts.mapper->begin(frame.T_odom_base, std::move(earlier));
+}
+
 }  // namespace
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)
     : config_(config), classes_(classes), fitted_(config), parts_(makeParts(config, classes)) {}
-
-bool Slam::goesOn(const StampedPose& next) const {
-  const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
-  if (!last || secondsFromStamp(next.stamp - last->stamp) > kMaxPause_s) return false;
-  return parts_.continuity.goesOn(next);
-}
 
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
   const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
@@ -82,8 +96,11 @@ void Slam::processReadyFrames() {
     }
     if (parts_.mapper && parts_.standing.add(frame->T_odom_base)) {
       parts_.assembler.countStanding();
+    } else if (parts_.mapper && (parts_.is_fitted || localizerOf(parts_.mode) != nullptr)) {
+      process(*frame);
     } else if (parts_.mapper) {
-      processOrWait(*frame);
+      parts_.waiting.push_back(*frame);
+      if (parts_.detector_range.add(frame->detections)) fitToDetector();
     }
     parts_.latest_frame = std::move(frame);
   }
@@ -96,11 +113,11 @@ void Slam::process(const Frame& frame) {
     endSubmap();
     const double reach_m = fitted_.mapper.alignment.radius_m;
     if (isPlaceKnown(parts_.map, fitted_.localization.known_passes, kSamePlace * reach_m)) {
-      enter(Following{localizerHere()});
+      enter(Following{localizerHere(T_map_odom(), fitted_)});
       return follow(frame);
     }
   }
-  if (!parts_.mapper->isOpen()) beginSubmap(frame);
+  if (!parts_.mapper->isOpen()) beginSubmap(frame, T_map_odom() * frame.T_odom_base, fitted_, parts_);
   const Stopwatch watch;
   parts_.mapper->add(frame, parts_.rng);
   parts_.mapping_s += watch.elapsed_s();
@@ -126,21 +143,6 @@ void Slam::follow(const Frame& frame) {
   }
 }
 
-void Slam::beginSubmap(const Frame& frame) {
-  const double tied_at_m = std::max(parts_.tied_at_m, parts_.map.closedAt_m());
-  const Motion ahead = parts_.map.keyframes().empty()
-                           ? Motion{}
-                           : motionOf(parts_.map.keyframes().back().T_odom_base.inverse() * frame.T_odom_base);
-  parts_.prediction = parts_.closer->predict(parts_.map, T_map_odom() * frame.T_odom_base, tied_at_m, ahead);
-  parts_.submap_driven = parts_.driven;
-  EarlierMap earlier;
-  if (config_.back_end.close_loops) {
-    earlier = earlierMapAround(parts_.prediction.prior, parts_.map, parts_.graph, recentSubmaps(fitted_),
-                               fitted_.mapper.alignment.radius_m);
-  }
-  parts_.mapper->begin(frame.T_odom_base, std::move(earlier));
-}
-
 void Slam::endSubmap() {
   if (!parts_.is_fitted && !parts_.waiting.empty()) fitToDetector();
   if (!parts_.mapper || !parts_.mapper->isOpen()) return;
@@ -155,7 +157,7 @@ void Slam::endSubmap() {
   const IdRange<KeyframeId> keyframes =
       map.add(std::make_shared<const Submap>(std::move(finished.submap)), std::move(cut.keyframes));
   parts_.graph.add(map, keyframes, cut.sightings, odometry);
-  optimize();
+  parts_.graph.settle(map);
   parts_.closer->add(map);
   const ClosureQuery query{keyframes, std::move(finished.alignment), parts_.prediction, parts_.tied_at_m};
   for (const ClosureSource source : parts_.closer->sources()) {
@@ -164,30 +166,13 @@ void Slam::endSubmap() {
       is_any_verified = is_any_verified || closure.is_verified;
       map.add(std::move(closure));
     }
-    if (is_any_verified) optimize();
-  }
-}
-
-void Slam::optimize(bool is_whole) {
-  Map& map = parts_.map;
-  map.apply(parts_.graph.review(map));
-  for (int solution = 0; solution <= kMoreSolutions; ++solution) {
-    const auto changed = map.takeChanges();
-    map.apply(is_whole ? parts_.graph.optimizeFully(changed) : parts_.graph.optimize(changed));
-    if (map.identity().changedNames().empty()) return;
+    if (is_any_verified) parts_.graph.settle(map);
   }
 }
 
 void Slam::finish() {
   endSubmap();
-  if (!parts_.map.keyframes().empty()) optimize(true);
-}
-
-/// A localizer that begins where the odometry is by its present correction.
-Localizer Slam::localizerHere() const {
-  Localizer localizer(fitted_.localization);
-  localizer.expectAt(T_map_odom(), 0.0);
-  return localizer;
+  if (!parts_.map.keyframes().empty()) parts_.graph.settle(parts_.map, true);
 }
 
 /// Every change of mode.
@@ -208,7 +193,7 @@ void Slam::localize() {
   endSubmap();
   if (parts_.map.submaps().empty()) throw std::logic_error("Slam: there is no map to localize in");
   const Localizer* localizer = localizerOf(parts_.mode);
-  enter(Localizing{localizer != nullptr ? *localizer : localizerHere(), false});
+  enter(Localizing{localizer != nullptr ? *localizer : localizerHere(T_map_odom(), fitted_), false});
 }
 
 void Slam::resumeMapping() {
@@ -245,6 +230,12 @@ Pose Slam::T_map_odom() const {
 
 TrajectoryRecord trajectoryRecordOf(const Slam& slam) {
   return slam.parts().sessions.record(slam.map());
+}
+
+bool goesOn(const Slam& slam, const StampedPose& next) {
+  const std::optional<StampedPose> last = slam.parts().sessions.latestOdometry();
+  if (!last || secondsFromStamp(next.stamp - last->stamp) > kMaxPause_s) return false;
+  return slam.parts().continuity.goesOn(next);
 }
 
 std::vector<StampedPose> trajectoryOf(const Slam& slam) {

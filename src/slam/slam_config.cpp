@@ -74,12 +74,6 @@ void fitParts(const SlamConfig& fitted, const ClassTable& classes, SlamParts& pa
   parts.closer->setOdometry(parts.mapper->odometryModel());
 }
 
-void Slam::processOrWait(const Frame& frame) {
-  if (parts_.is_fitted || localizerOf(parts_.mode) != nullptr) return process(frame);
-  parts_.waiting.push_back(frame);
-  if (parts_.detector_range.add(frame.detections)) fitToDetector();
-}
-
 void Slam::fitToDetector() {
   parts_.is_fitted = true;
   const double factor = parts_.detector_range.factor();

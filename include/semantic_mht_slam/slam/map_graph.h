@@ -41,6 +41,10 @@ class MapGraph {
   /// The same for the whole graph at once.
   [[nodiscard]] GraphUpdate optimizeFully(const std::vector<std::vector<LandmarkId>>& changed);
 
+  /// Reviews the closures and solves (the whole graph at once if `is_whole`) until map and graph agree on which
+  /// landmarks are one: what closures that are taken back had joined comes apart.
+  void settle(Map& map, bool is_whole = false);
+
   /// Correction of the odometry at the newest keyframe.
   Pose T_map_odom(const Map& map) const;
 

@@ -101,9 +101,6 @@ class Slam {
   /// Everything that is needed to go on from here.
   SlamState snapshot() const;
 
-  /// True if `next` may be the odometry after the newest of the same drive (see `OdometryContinuity`), within a minute.
-  bool goesOn(const StampedPose& next) const;
-
   /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used. One that no motion leads
   /// to from the newest begins a session.
   bool addOdometry(const StampedPose& T_odom_base);
@@ -140,21 +137,20 @@ class Slam {
  private:
   void processReadyFrames();
   void process(const Frame& frame);
-  void processOrWait(const Frame& frame);
   /// The lengths are those of the detector from now on; the frames that waited for it are mapped.
   void fitToDetector();
   void follow(const Frame& frame);
-  void beginSubmap(const Frame& frame);
   void endSubmap();
-  void optimize(bool is_whole = false);
   void enter(Mode mode);
-  Localizer localizerHere() const;
 
   SlamConfig config_;
   ClassTable classes_;
   SlamConfig fitted_;  ///< with the lengths of the detector
   SlamParts parts_;
 };
+
+/// True if `next` may be the odometry after the newest of the same drive (see `OdometryContinuity`), within a minute.
+bool goesOn(const Slam& slam, const StampedPose& next);
 
 /// What the trajectory is put together from; takes much less time than that.
 TrajectoryRecord trajectoryRecordOf(const Slam& slam);
