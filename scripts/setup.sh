@@ -67,6 +67,19 @@ link_without_blanks() {
   printf '%s\n' "$link"
 }
 
+# Says how far a build has come, from its log, until it ends.
+say_progress() {
+  local make=$1 log=$2 said=0 percent
+  local begin=$SECONDS
+  while kill -0 "$make" 2>/dev/null; do
+    sleep 1
+    percent=$(grep -oE '^\[ *[0-9]+%\]' "$log" | tail -n 1 | tr -dc '0-9')
+    if [ "${percent:-0}" -lt $((said + 10)) ] || [ $((SECONDS - begin)) -lt 10 ]; then continue; fi
+    said=$percent
+    echo "setup: $percent % built, about $(((SECONDS - begin) * (100 - percent) / percent / 60 + 1)) min left"
+  done
+}
+
 configure_and_build() {
   local base=$REPOSITORY tests=$1 log
   [[ "$base" != *[[:space:]]* ]] || base=$(link_without_blanks "$REPOSITORY")
@@ -88,7 +101,9 @@ configure_and_build() {
     tail -n 30 "$log" >&2
     fail "configuring failed; the end of its output is above (all of it: $log)"
   fi
-  cmake --build "$build" -- -j"$(nproc)" --no-print-directory all ${tests:+tests} >"$build/build.log" 2>&1 || {
+  cmake --build "$build" -- -j"$(nproc)" --no-print-directory all ${tests:+tests} >"$build/build.log" 2>&1 &
+  say_progress "$!" "$build/build.log"
+  wait "$!" || {
     grep -E -A5 "error:|\*\*\*" "$build/build.log" | head -n 60 >&2 || true
     fail "building failed; the first errors are above (all of it: $build/build.log)"
   }

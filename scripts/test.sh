@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, runs every check and test, and ends with "N passed, N failed, N skipped".
+#   scripts/test.sh         everything
+#   scripts/test.sh NAME    the tests of a name alone, for example mapping_test or map_services; a wrong one lists them
 # Tests on KITTI data look for the folder SEMANTIC_MHT_SLAM_DATA, else ../shared/data beside the checkout, and are
 # skipped where there is none.
 set -uo pipefail
@@ -15,7 +17,18 @@ fi
 export SEMANTIC_MHT_SLAM_DATA=${SEMANTIC_MHT_SLAM_DATA:-}
 export ROS_LOG_DIR="$WORKSPACE/ros_logs"
 
+TARGETS=(run_tests)
+PREFIX='run_tests_semantic_mht_slam_(gtest|python|rostest_test_(ros|rviz_plugins))_'
+if [ $# -gt 0 ]; then
+  ALL=$(cmake --build "$WORKSPACE/build" --target help | sed -nE "s/^\.\.\. ($PREFIX.+)\$/\\1/p")
+  mapfile -t TARGETS < <(grep -E "^$PREFIX$1(\.test)?\$" <<<"$ALL")
+  if [ "${#TARGETS[@]}" -eq 0 ]; then
+    { echo "test: there is no test of the name '$1'; there are:"; sed -E "s/^$PREFIX//; s/\.test\$//" <<<"$ALL" | sort -u; } >&2
+    exit 1
+  fi
+fi
+
 echo "test: running (output: $WORKSPACE/build/tests.log)"
 rm -rf "$WORKSPACE/build/test_results"
-cmake --build "$WORKSPACE/build" -- -j1 run_tests >"$WORKSPACE/build/tests.log" 2>&1
+cmake --build "$WORKSPACE/build" -- -j1 "${TARGETS[@]}" >"$WORKSPACE/build/tests.log" 2>&1
 exec python3 "$REPOSITORY/scripts/summarize_tests.py" "$WORKSPACE/build/test_results" "$REPOSITORY"

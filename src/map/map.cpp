@@ -123,6 +123,11 @@ bool Map::isKept(LandmarkId landmark) const {
   });
 }
 
+bool Map::hasLandmark(LandmarkId name) const {
+  const LandmarkId id = identity_.landmarkOf(name);
+  return last_seen_.count(id) > 0 && isKept(id);
+}
+
 void Map::forEachLandmark(const Visit& visit) const {
   for (const auto& [id, seen] : last_seen_) {
     if (isKept(id)) visit(seen.submap, landmark(id, seen));

@@ -179,6 +179,7 @@ SemanticMap toMessage(Stamp stamp, const std::string& map_frame, const ClassTabl
     map.classes.back().id = static_cast<std::uint16_t>(info.id);
     map.classes.back().name = info.name;
     map.classes.back().is_static = info.is_static;
+    map.classes.back().color = info.color;
   }
   for (const MixtureLandmark& landmark : landmarks) map.landmarks.push_back(toMessage(landmark, classes));
   return map;

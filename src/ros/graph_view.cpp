@@ -8,9 +8,10 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kOutlineMargin_m = 3.0;
-constexpr double kLift_m = 3.0;   // above the trajectory, so that both are seen
-constexpr double kPlace_m = 3.0;  // closures are short lines: seen from above a town, their places stand out
+// In symbols.
+constexpr double kOutlineMargin = 3.0;
+constexpr double kLift = 3.0;   // above the trajectory, so that both are seen
+constexpr double kPlace = 3.0;  // closures are short lines: seen from above a town, their places stand out
 
 std_msgs::ColorRGBA makeColor(float r, float g, float b, float a) {
   std_msgs::ColorRGBA color;
@@ -93,14 +94,14 @@ std::set<SubmapId> comparedWithNewest(const Map& map) {
 }
 
 /// Four edges around positions of a submap, along the submap's axes.
-void addOutline(const Pose& T_map_submap, const std::vector<Eigen::Vector3d>& positions_m,
+void addOutline(const Pose& T_map_submap, const std::vector<Eigen::Vector3d>& positions_m, double margin_m,
                 visualization_msgs::Marker& m, const std_msgs::ColorRGBA& color) {
   if (positions_m.empty()) return;
   Eigen::AlignedBox3d box;
   const Pose T_submap_map = T_map_submap.inverse();
   for (const Eigen::Vector3d& position_m : positions_m) box.extend(T_submap_map * position_m);
-  const Eigen::Vector3d low = box.min() - Eigen::Vector3d::Constant(kOutlineMargin_m);
-  const Eigen::Vector3d high = box.max() + Eigen::Vector3d::Constant(kOutlineMargin_m);
+  const Eigen::Vector3d low = box.min() - Eigen::Vector3d::Constant(margin_m);
+  const Eigen::Vector3d high = box.max() + Eigen::Vector3d::Constant(margin_m);
   const double z = box.center().z();
   const Eigen::Vector3d corners[] = {
       {low.x(), low.y(), z}, {high.x(), low.y(), z}, {high.x(), high.y(), z}, {low.x(), high.y(), z}};
@@ -137,11 +138,15 @@ std::size_t acceptedClosures(const Map& map) {
                                                 [](const auto& record) { return record.is_accepted; }));
 }
 
-visualization_msgs::MarkerArray toLoopMarkers(const Map& map, const LiveConfig& live, const std::string& map_frame) {
-  visualization_msgs::Marker accepted = makeLines("accepted", visualization_msgs::Marker::LINE_LIST, 1.0, map_frame);
-  visualization_msgs::Marker places = makeLines("places", visualization_msgs::Marker::SPHERE_LIST, kPlace_m, map_frame);
-  places.scale.y = places.scale.z = kPlace_m;
-  visualization_msgs::Marker refused = makeLines("refused", visualization_msgs::Marker::LINE_LIST, 0.3, map_frame);
+visualization_msgs::MarkerArray toLoopMarkers(const Map& map, double symbol_m, const LiveConfig& live,
+                                              const std::string& map_frame) {
+  visualization_msgs::Marker accepted =
+      makeLines("accepted", visualization_msgs::Marker::LINE_LIST, symbol_m, map_frame);
+  visualization_msgs::Marker places =
+      makeLines("places", visualization_msgs::Marker::SPHERE_LIST, kPlace * symbol_m, map_frame);
+  places.scale.y = places.scale.z = kPlace * symbol_m;
+  visualization_msgs::Marker refused =
+      makeLines("refused", visualization_msgs::Marker::LINE_LIST, 0.3 * symbol_m, map_frame);
   accepted.color = places.color = kGreen;
   refused.color = kRed;
   for (const LoopClosureRecord& record : map.closures()) {
@@ -149,15 +154,16 @@ visualization_msgs::MarkerArray toLoopMarkers(const Map& map, const LiveConfig& 
     visualization_msgs::Marker& marker = record.is_accepted ? accepted : refused;
     for (const KeyframeId keyframe : {record.query_keyframe, record.match_keyframe}) {
       const Eigen::Vector3d& position_m = map.T_map_keyframe(keyframe).translation_m;
-      marker.points.push_back(toPoint(position_m + Eigen::Vector3d(0.0, 0.0, kLift_m)));
+      marker.points.push_back(toPoint(position_m + Eigen::Vector3d(0.0, 0.0, kLift * symbol_m)));
     }
     if (record.is_accepted) places.points.push_back(accepted.points.back());
   }
   return makeArray({accepted, places, refused});
 }
 
-visualization_msgs::MarkerArray toSubmapMarkers(const Map& map, const std::string& map_frame) {
-  visualization_msgs::Marker outlines = makeLines("submaps", visualization_msgs::Marker::LINE_LIST, 0.6, map_frame);
+visualization_msgs::MarkerArray toSubmapMarkers(const Map& map, double symbol_m, const std::string& map_frame) {
+  visualization_msgs::Marker outlines =
+      makeLines("submaps", visualization_msgs::Marker::LINE_LIST, 0.6 * symbol_m, map_frame);
   if (map.submaps().empty()) return makeArray({outlines});
   const std::set<SubmapId> compared = comparedWithNewest(map);
   for (const SubmapId submap : map.submaps().ids()) {
@@ -165,13 +171,16 @@ visualization_msgs::MarkerArray toSubmapMarkers(const Map& map, const std::strin
     for (const KeyframeId keyframe : map.keyframesOf(submap)) {
       positions_m.push_back(map.T_map_keyframe(keyframe).translation_m);
     }
-    addOutline(map.T_map_submap(submap), positions_m, outlines, compared.count(submap) > 0 ? kOrange : kGrey);
+    addOutline(map.T_map_submap(submap), positions_m, kOutlineMargin * symbol_m, outlines,
+               compared.count(submap) > 0 ? kOrange : kGrey);
   }
   return makeArray({outlines});
 }
 
-visualization_msgs::MarkerArray toOdometryMarkers(const std::vector<Pose>& T_odom_base, const std::string& map_frame) {
-  visualization_msgs::Marker line = makeLines("odometry", visualization_msgs::Marker::LINE_STRIP, 0.5, map_frame);
+visualization_msgs::MarkerArray toOdometryMarkers(const std::vector<Pose>& T_odom_base, double symbol_m,
+                                                  const std::string& map_frame) {
+  visualization_msgs::Marker line =
+      makeLines("odometry", visualization_msgs::Marker::LINE_STRIP, 0.5 * symbol_m, map_frame);
   line.color = makeColor(0.85F, 0.35F, 0.75F, 0.8F);
   if (T_odom_base.size() < 2) return makeArray({line});
   for (const Pose& pose : T_odom_base) line.points.push_back(toPoint(pose.translation_m));

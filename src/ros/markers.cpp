@@ -20,10 +20,17 @@ std_msgs::ColorRGBA toColor(const ClassInfo& info) {
   return color;
 }
 
-/// Large enough to be seen from above a whole town; thin things stay thinner than others.
-Eigen::Vector3d displaySize(const Detection& detection, const ClassInfo& info) {
-  if (detection.size_m) return detection.size_m->cwiseMax(0.1);
-  return info.transition == Transition::kDirac ? Eigen::Vector3d(1.0, 1.0, 4.0) : Eigen::Vector3d(2.5, 2.5, 2.0);
+/// Thin things stay thinner than others.
+Eigen::Vector3d displaySize(const Detection& detection, const ClassInfo& info, double symbol_m) {
+  if (detection.size_m) return detection.size_m->cwiseMax(0.1 * symbol_m);
+  const bool is_thin = info.transition == Transition::kDirac;
+  return symbol_m * (is_thin ? Eigen::Vector3d(1.0, 1.0, 4.0) : Eigen::Vector3d(2.5, 2.5, 2.0));
+}
+
+std_msgs::ColorRGBA vehicleColor() {
+  std_msgs::ColorRGBA color;
+  color.r = color.g = color.b = color.a = 1.0F;
+  return color;
 }
 
 visualization_msgs::Marker clearingMarker(const std_msgs::Header& header) {
@@ -36,8 +43,8 @@ visualization_msgs::Marker clearingMarker(const std_msgs::Header& header) {
 /// Adds the markers of one landmark after another.
 class LandmarkDrawing {
  public:
-  LandmarkDrawing(const SemanticMap& map, const ClassTable& classes, const LiveConfig& live)
-      : classes_(classes), live_(live) {
+  LandmarkDrawing(const SemanticMap& map, const ClassTable& classes, double symbol_m, const LiveConfig& live)
+      : classes_(classes), symbol_m_(symbol_m), live_(live) {
     marker_.header = map.header;
     marker_.pose.orientation.w = 1.0;
     array_.markers.push_back(clearingMarker(map.header));
@@ -47,7 +54,9 @@ class LandmarkDrawing {
     const std::optional<ClassIndex> index = classes_.findId(landmark.class_id);
     if (!index) return;
     const ClassInfo& info = classes_[*index];
-    for (const GaussianComponent& component : landmark.components) addEllipsoid(component, info);
+    for (const GaussianComponent& component : landmark.components) {
+      addEllipsoid(component, landmark.provisional ? kProvisionalOpacity : 1.0, info);
+    }
     if (landmark.undecided) addAlternatives(landmark);
     if (live_.landmark_labels) addLabel(landmark, info);
   }
@@ -66,16 +75,16 @@ class LandmarkDrawing {
     return array_.markers.back();
   }
 
-  void addEllipsoid(const GaussianComponent& component, const ClassInfo& info) {
+  void addEllipsoid(const GaussianComponent& component, double opacity, const ClassInfo& info) {
     const Eigen::Matrix3d cov = Eigen::Map<const Eigen::Matrix3d>(component.covariance.data());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(cov);
     Eigen::Matrix3d rotation = axes.eigenvectors();
     if (rotation.determinant() < 0.0) rotation.col(0) *= -1.0;
     const Eigen::Vector3d size =
-        (2.0 * live_.landmark_sigmas * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt()).cwiseMax(kSmallest_m);
+        (2.0 * live_.landmark_sigmas * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt()).cwiseMax(kLandmark * symbol_m_);
     std_msgs::ColorRGBA color = toColor(info);
-    color.a = static_cast<float>(0.2 + 0.7 * component.weight);
-    if (size.maxCoeff() <= kSmallest_m) return addDot(component.mean, color, info);
+    color.a = static_cast<float>(opacity * (0.2 + 0.7 * component.weight));
+    if (size.maxCoeff() <= kLandmark * symbol_m_) return addDot(component.mean, color, info);
     visualization_msgs::Marker& marker = push(info.name, visualization_msgs::Marker::SPHERE);
     marker.pose = toMessage(Pose{Eigen::Quaterniond(rotation), positionOf(component.mean)});
     marker.scale.x = size.x();
@@ -91,7 +100,7 @@ class LandmarkDrawing {
     if (is_new) {
       dots.ns = info.name;
       dots.type = visualization_msgs::Marker::SPHERE_LIST;
-      dots.scale.x = dots.scale.y = dots.scale.z = kSmallest_m;
+      dots.scale.x = dots.scale.y = dots.scale.z = kLandmark * symbol_m_;
     }
     dots.points.push_back(position);
     dots.colors.push_back(color);
@@ -99,7 +108,7 @@ class LandmarkDrawing {
 
   void addAlternatives(const Landmark& landmark) {
     visualization_msgs::Marker& marker = push("undecided", visualization_msgs::Marker::LINE_LIST);
-    marker.scale.x = 0.3;
+    marker.scale.x = 0.3 * symbol_m_;
     marker.color = undecided_color_;
     for (const GaussianComponent& component : landmark.components) {
       marker.points.push_back(landmark.position);
@@ -110,8 +119,8 @@ class LandmarkDrawing {
   void addLabel(const Landmark& landmark, const ClassInfo& info) {
     visualization_msgs::Marker& marker = push("labels", visualization_msgs::Marker::TEXT_VIEW_FACING);
     marker.pose.position = landmark.position;
-    marker.pose.position.z += 2.5;
-    marker.scale.z = 1.8;
+    marker.pose.position.z += 2.5 * symbol_m_;
+    marker.scale.z = 1.8 * symbol_m_;
     marker.color = undecided_color_;
     if (!landmark.undecided) marker.color = toColor(info);
     marker.text = info.name + " " + std::to_string(landmark.id);
@@ -120,9 +129,11 @@ class LandmarkDrawing {
 
   static Eigen::Vector3d positionOf(const geometry_msgs::Point& point) { return {point.x, point.y, point.z}; }
 
-  static constexpr double kSmallest_m = 1.0;  // smaller ones could not be seen or clicked
+  static constexpr double kLandmark = 2.0;  // symbols; smaller ones could not be seen or clicked
+  static constexpr double kProvisionalOpacity = 0.5;
 
   const ClassTable& classes_;
+  double symbol_m_;
   const LiveConfig& live_;
   visualization_msgs::Marker marker_;
   visualization_msgs::MarkerArray array_;
@@ -138,7 +149,7 @@ class LandmarkDrawing {
 }  // namespace
 
 visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& T_map_odom, const ClassTable& classes,
-                                                const std::string& map_frame) {
+                                                double symbol_m, const std::string& map_frame) {
   visualization_msgs::MarkerArray array;
   visualization_msgs::Marker marker;
   marker.header.frame_id = map_frame;
@@ -146,14 +157,21 @@ visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& 
   marker.action = visualization_msgs::Marker::DELETEALL;
   array.markers.push_back(marker);
   marker.action = visualization_msgs::Marker::ADD;
-  marker.type = visualization_msgs::Marker::CUBE;
   const Pose T_map_base = T_map_odom * frame.T_odom_base;
+  marker.ns = "base";  // classes have names like "vehicle"
+  marker.type = visualization_msgs::Marker::ARROW;
+  marker.pose = toMessage(T_map_base);
+  marker.scale.x = 8.0 * symbol_m;
+  marker.scale.y = marker.scale.z = 2.0 * symbol_m;
+  marker.color = vehicleColor();
+  array.markers.push_back(marker);
+  marker.type = visualization_msgs::Marker::CUBE;
   for (const Detection& detection : frame.detections) {
     const ClassInfo& info = classes[detection.class_index];
     marker.ns = info.name;
     marker.id = detection.row;
     marker.pose = toMessage(Pose{T_map_base.rotation, T_map_base * detection.position_m});
-    const Eigen::Vector3d size = displaySize(detection, info);
+    const Eigen::Vector3d size = displaySize(detection, info, symbol_m);
     marker.scale.x = size.x();
     marker.scale.y = size.y();
     marker.scale.z = size.z();
@@ -163,9 +181,9 @@ visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& 
   return array;
 }
 
-visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes,
+visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes, double symbol_m,
                                                   const LiveConfig& live) {
-  LandmarkDrawing drawing(map, classes, live);
+  LandmarkDrawing drawing(map, classes, symbol_m, live);
   for (const Landmark& landmark : map.landmarks) {
     if (landmark.existence_prob >= live.landmark_min_existence_prob) drawing.add(landmark);
   }

@@ -5,6 +5,7 @@
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/landmark_choice.h"
 #include "semantic_mht_slam/ros/map_file.h"
 #include "semantic_mht_slam/ros/slam_node.h"
 
@@ -21,6 +22,7 @@ void SlamNode::advertiseServices() {
   services_.push_back(handle_.advertiseService("reset", &SlamNode::reset, this));
   services_.push_back(handle_.advertiseService("pause", &SlamNode::pause, this));
   services_.push_back(handle_.advertiseService("resume", &SlamNode::resume, this));
+  services_.push_back(handle_.advertiseService("get_landmarks", &SlamNode::getLandmarks, this));
   services_.push_back(handle_.advertiseService("save_map", &SlamNode::saveMap, this));
   services_.push_back(handle_.advertiseService("load_map", &SlamNode::loadMap, this));
   services_.push_back(handle_.advertiseService("set_mode", &SlamNode::setMode, this));
@@ -88,6 +90,22 @@ bool SlamNode::resume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& 
     response.success = std::exchange(is_paused_, false);
     response.message = response.success ? "objects are used again" : "the node is not paused";
     noteStatus();
+  });
+}
+
+bool SlamNode::getLandmarks(GetLandmarks::Request& request, GetLandmarks::Response& response) {
+  return answer("get_landmarks", response, [&] {
+    const auto lock = lockCaughtUp();
+    try {
+      response.landmarks = chosenLandmarks(publisher_.map(), request);
+    } catch (const InputError& error) {
+      response.message = error.what();
+      return;
+    }
+    response.header = publisher_.map().header;
+    response.success = true;
+    response.message = std::to_string(response.landmarks.size()) + " of " +
+                       std::to_string(publisher_.map().landmarks.size()) + " landmarks";
   });
 }
 

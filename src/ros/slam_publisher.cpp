@@ -1,7 +1,9 @@
 #include "semantic_mht_slam/ros/slam_publisher.h"
 
+#include <algorithm>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -15,7 +17,17 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kOdometrySpacing_m = 1.0;
+constexpr double kProvisionalShare = 50.0;     // of the time that making it takes, before it is made again
+constexpr double kProvisionalPause_s = 1.0;    // a map of a town is a large message
+constexpr double kSymbolsAcross = 250.0;       // symbols of a map beside each other: still seen with all of it in view
 constexpr std::uint32_t kClosureQueue = 1000;  // a submap may look at many
+
+/// As large as the detector's range is by the reference's, where a symbol is a metre; larger in a large map.
+double symbolSize(double range_factor, const SemanticMap& map) {
+  Eigen::AlignedBox2d box;
+  for (const Landmark& landmark : map.landmarks) box.extend(Eigen::Vector2d(landmark.position.x, landmark.position.y));
+  return box.isEmpty() ? range_factor : std::max(range_factor, box.sizes().maxCoeff() / kSymbolsAcross);
+}
 
 }  // namespace
 
@@ -31,7 +43,9 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
       odometry_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/odometry", 2, true)),
       closures_publisher_(handle.advertise<LoopClosure>("loop_closures", kClosureQueue)),
       hypotheses_publisher_(handle.advertise<HypothesisTree>("hypotheses", 10)),
-      map_publisher_(handle.advertise<SemanticMap>("map", 1, true)) {}
+      map_publisher_(handle.advertise<SemanticMap>("map", 1, true)),
+      map_(toMessage(0, config.map_frame, classes, {}, 0)),
+      shown_(map_) {}
 
 void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
   const StampedPose latest = *latestPoseOf(slam);
@@ -66,17 +80,19 @@ void SlamPublisher::publishFrame(const Slam& slam, const LiveConfig& live) {
   const std::optional<Frame>& frame = slam.parts().latest_frame;
   if (!frame || frame->stamp == published_frame_) return;
   published_frame_ = frame->stamp;
-  objects_publisher_.publish(toObjectMarkers(*frame, slam.T_map_odom(), classes_, config_.map_frame));
+  objects_publisher_.publish(toObjectMarkers(*frame, slam.T_map_odom(), classes_, symbol_m_, config_.map_frame));
   if (hypothesesOf(slam).empty()) return;
   hypotheses_publisher_.publish(
       toMessage(*frame, config_.map_frame, slam.parts().mapper->submap(), hypothesesOf(slam)));
-  if (slam.map().submaps().size() != published_submaps_) publishMap(slam, live);
+  slam.map().submaps().size() != published_submaps_ ? publishMap(slam, live) : publishProvisional(slam, live);
 }
 
 void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {
   published_submaps_ = slam.map().submaps().size();
   const Stamp stamp = slam.parts().latest_frame ? slam.parts().latest_frame->stamp : 0;
   map_ = toMessage(stamp, config_.map_frame, classes_, landmarksOf(slam), published_submaps_);
+  shown_ = map_;
+  symbol_m_ = symbolSize(slam.parts().range_factor, map_);
   map_publisher_.publish(map_);
   const std::vector<ClosureId> news = closures_.takeNews(slam.map());
   for (const LoopClosure& closure : toLoopClosures(slam.map(), news, config_.map_frame)) {
@@ -86,10 +102,30 @@ void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {
   publishMapMarkers(slam, live);
 }
 
+void SlamPublisher::publishProvisional(const Slam& slam, const LiveConfig& live) {
+  const ros::WallTime now = ros::WallTime::now();
+  if (now < next_provisional_) return;
+  const std::vector<MixtureLandmark> news = provisionalLandmarksOf(slam);
+  if (news.empty() && shown_.landmarks.size() == map_.landmarks.size()) return;
+  shown_ = map_;
+  shown_.header.stamp = toRosTime(slam.parts().latest_frame->stamp);
+  for (const MixtureLandmark& landmark : news) {
+    shown_.landmarks.push_back(toMessage(landmark, classes_));
+    shown_.landmarks.back().provisional = true;
+  }
+  std::sort(shown_.landmarks.begin(), shown_.landmarks.end(),
+            [](const Landmark& a, const Landmark& b) { return a.id < b.id; });
+  symbol_m_ = symbolSize(slam.parts().range_factor, shown_);
+  map_publisher_.publish(shown_);
+  landmarks_publisher_.publish(toLandmarkMarkers(shown_, classes_, symbol_m_, live));
+  const ros::WallTime end = ros::WallTime::now();
+  next_provisional_ = end + ros::WallDuration(std::max(kProvisionalPause_s, kProvisionalShare * (end - now).toSec()));
+}
+
 void SlamPublisher::publishMapMarkers(const Slam& slam, const LiveConfig& live) {
-  landmarks_publisher_.publish(toLandmarkMarkers(map_, classes_, live));
-  loops_publisher_.publish(toLoopMarkers(slam.map(), live, config_.map_frame));
-  submaps_publisher_.publish(toSubmapMarkers(slam.map(), config_.map_frame));
+  landmarks_publisher_.publish(toLandmarkMarkers(shown_, classes_, symbol_m_, live));
+  loops_publisher_.publish(toLoopMarkers(slam.map(), symbol_m_, live, config_.map_frame));
+  submaps_publisher_.publish(toSubmapMarkers(slam.map(), symbol_m_, config_.map_frame));
 }
 
 void SlamPublisher::publishTrajectory(const TrajectoryTurn& turn, const std::vector<StampedPose>& trajectory,
@@ -97,7 +133,7 @@ void SlamPublisher::publishTrajectory(const TrajectoryTurn& turn, const std::vec
   if (!turn.owns_lock()) throw std::logic_error("SlamPublisher: a trajectory is published by who has the turn");
   const auto most = static_cast<std::size_t>(config_.trajectory_poses);
   trajectory_publisher_.publish(toPath(thinned(trajectory, most), config_.map_frame));
-  odometry_publisher_.publish(toOdometryMarkers(T_odom_base, config_.map_frame));
+  odometry_publisher_.publish(toOdometryMarkers(T_odom_base, symbol_m_, config_.map_frame));
 }
 
 std::vector<Pose> SlamPublisher::odometry() const {
@@ -113,6 +149,7 @@ void SlamPublisher::startAgain(const Slam& slam) {
   loops_ = 0;
   odometry_.clear();
   map_ = toMessage(0, config_.map_frame, classes_, {}, 0);
+  shown_ = map_;
   map_publisher_.publish(map_);
   publishMapMarkers(slam, {});
   publishTrajectory(takeTrajectoryTurn(), {}, {});

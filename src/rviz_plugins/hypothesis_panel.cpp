@@ -7,6 +7,7 @@
 #include <QTableWidget>
 #include <QTimer>
 #include <QVBoxLayout>
+#include <algorithm>
 
 #include <pluginlib/class_list_macros.hpp>
 #include <std_srvs/Trigger.h>
@@ -37,6 +38,8 @@ QLabel* makeText(const QString& text) {
 HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   auto* layout = new QVBoxLayout(this);
   counters_ = makeText("no data yet");
+  legend_ = makeText("");
+  legend_->setObjectName("legend");
   fault_label_ = makeText("");
   fault_label_->setStyleSheet("color: #c02020");
   landmark_ = makeText("Click a landmark with the tool Publish Point to see its history and alternatives.");
@@ -47,6 +50,7 @@ HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   landmark_->setObjectName("landmark");
   status_->setObjectName("status");
   layout->addWidget(counters_);
+  layout->addWidget(legend_);
   layout->addWidget(fault_label_);
   layout->addWidget(makeTable(), 1);
   layout->addWidget(landmark_);
@@ -126,8 +130,10 @@ void HypothesisPanel::onInitialize() {
     tree_ = *message;
     has_new_tree_ = true;
   });
-  map_subscriber_ =
-      handle_.subscribe<SemanticMap>("map", 1, [this](const SemanticMapConstPtr& message) { map_ = message; });
+  map_subscriber_ = handle_.subscribe<SemanticMap>("map", 1, [this](const SemanticMapConstPtr& message) {
+    map_ = message;
+    has_new_map_ = true;
+  });
   diagnostics_subscriber_ = handle_.subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics", 10,
       [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { noteDiagnostics(*message); });
@@ -164,6 +170,11 @@ void HypothesisPanel::showLandmark(const geometry_msgs::PointStamped& click) {
 
 void HypothesisPanel::refresh() {
   if (has_new_tree_) refreshTable();
+  if (has_new_map_) {
+    has_new_map_ = false;
+    refreshLegend();
+    view_.fit(*map_, vis_manager_);
+  }
   refreshCounters();
   refreshStatus();
 }
@@ -210,6 +221,20 @@ void HypothesisPanel::refreshCounters() {
                          .arg(figure("frame time, mean (ms)"), figure("waiting"), figure("resident memory (MB)")));
   fault_label_->setVisible(!fault_.empty());
   fault_label_->setText(QString::fromStdString(fault_));
+}
+
+/// The classes of the map in their colours, with the number of landmarks of each.
+void HypothesisPanel::refreshLegend() {
+  QStringList entries;
+  for (const SemanticClass& entry : map_->classes) {
+    const auto count = std::count_if(map_->landmarks.begin(), map_->landmarks.end(),
+                                     [&](const Landmark& landmark) { return landmark.class_id == entry.id; });
+    if (count == 0) continue;
+    entries << QString("<span style='color:%1'>&#9632;</span> %2 %3")
+                   .arg(QString::fromStdString(entry.color), QString::fromStdString(entry.name).toHtmlEscaped())
+                   .arg(count);
+  }
+  legend_->setText(entries.join(" &nbsp; "));
 }
 
 void HypothesisPanel::refreshStatus() {

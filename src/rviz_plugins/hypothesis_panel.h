@@ -12,6 +12,7 @@
 #include <semantic_mht_slam/SemanticMap.h>
 
 #include "service_caller.h"
+#include "view_fitter.h"
 
 class QLabel;
 class QLineEdit;
@@ -45,6 +46,7 @@ class HypothesisPanel : public rviz::Panel {
   void refresh();
   void refreshTable();
   void refreshCounters();
+  void refreshLegend();
   void refreshStatus();
   std::string fileName() const;
   void askOrReset();
@@ -57,6 +59,8 @@ class HypothesisPanel : public rviz::Panel {
   HypothesisTree tree_;
   bool has_new_tree_ = false;
   SemanticMapConstPtr map_;
+  bool has_new_map_ = false;
+  ViewFitter view_;
   std::map<std::string, std::string> figures_;  ///< of the node's diagnostics
   std::string fault_;                           ///< the first one of the node's diagnostics, or empty
   ServiceCaller services_;
@@ -72,6 +76,7 @@ class HypothesisPanel : public rviz::Panel {
   QPushButton* finish_ = nullptr;
   QPushButton* mapping_ = nullptr;
   QPushButton* localization_ = nullptr;
+  QLabel* legend_ = nullptr;
   QLabel* landmark_ = nullptr;
   QLabel* status_ = nullptr;
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/stopwatch.h"
+#include "semantic_mht_slam/mapping/fusion.h"
 #include "semantic_mht_slam/slam/surroundings.h"
 
 namespace semantic_mht_slam {
@@ -250,6 +251,12 @@ std::optional<StampedPose> latestPoseOf(const Slam& slam) {
 
 std::vector<MixtureLandmark> landmarksOf(const Slam& slam) {
   return landmarksOf(slam.map(), slam.parts().graph);
+}
+
+std::vector<MixtureLandmark> provisionalLandmarksOf(const Slam& slam) {
+  const SlamParts& parts = slam.parts();
+  if (!parts.mapper || !parts.mapper->isOpen()) return {};
+  return landmarksBeyond(parts.map, fuseHypotheses(parts.mapper->hypotheses()), parts.prediction.prior.T_a_b);
 }
 
 const std::vector<MapHypothesis>& hypothesesOf(const Slam& slam) {

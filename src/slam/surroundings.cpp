@@ -28,6 +28,16 @@ std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph) 
   return landmarks;
 }
 
+std::vector<MixtureLandmark> landmarksBeyond(const Map& map, const std::vector<MixtureLandmark>& seen,
+                                             const Pose& T_map_submap) {
+  std::vector<MixtureLandmark> landmarks;
+  for (const MixtureLandmark& landmark : seen) {
+    if (landmark.existence_prob < map.keepProb() || map.hasLandmark(landmark.id)) continue;
+    landmarks.push_back(transformed(T_map_submap, landmark));
+  }
+  return landmarks;
+}
+
 EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, const MapGraph& graph,
                             std::size_t recent_submaps, double reach_m) {
   EarlierMap earlier;

@@ -58,7 +58,7 @@ TEST(GraphViewTest, EverySubmapHasAnOutlineAroundItsKeyframes) {
   const Slam& slam = *driven;
   const std::size_t submaps = slam.map().submaps().size();
   ASSERT_GE(submaps, 2U);
-  const visualization_msgs::MarkerArray array = toSubmapMarkers(slam.map(), "map");
+  const visualization_msgs::MarkerArray array = toSubmapMarkers(slam.map(), 1.0, "map");
   const visualization_msgs::Marker& outlines = find(array, "submaps");
   EXPECT_EQ(outlines.points.size(), 8 * submaps);
   EXPECT_EQ(outlines.colors.size(), outlines.points.size());
@@ -74,10 +74,10 @@ TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
   ClosureNews news;
   LiveConfig live;
   live.refused_closures = true;
-  EXPECT_EQ(find(toLoopMarkers(slam.map(), live, "map"), "accepted").points.size(), 2 * accepted);
-  EXPECT_EQ(find(toLoopMarkers(slam.map(), live, "map"), "places").points.size(), accepted);
-  EXPECT_EQ(find(toLoopMarkers(slam.map(), live, "map"), "refused").points.size(), 2 * (all - accepted));
-  EXPECT_TRUE(find(toLoopMarkers(slam.map(), {}, "map"), "refused").points.empty());
+  EXPECT_EQ(find(toLoopMarkers(slam.map(), 1.0, live, "map"), "accepted").points.size(), 2 * accepted);
+  EXPECT_EQ(find(toLoopMarkers(slam.map(), 1.0, live, "map"), "places").points.size(), accepted);
+  EXPECT_EQ(find(toLoopMarkers(slam.map(), 1.0, live, "map"), "refused").points.size(), 2 * (all - accepted));
+  EXPECT_TRUE(find(toLoopMarkers(slam.map(), 1.0, {}, "map"), "refused").points.empty());
   const std::vector<LoopClosure> messages = toLoopClosures(slam.map(), news.takeNews(slam.map()), "map");
   ASSERT_EQ(messages.size(), all);
   EXPECT_TRUE(news.takeNews(slam.map()).empty()) << "told already";
@@ -90,8 +90,8 @@ TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
 
 TEST(GraphViewTest, WhatIsNotThereIsDeletedFromTheDisplay) {
   const Slam slam(SlamConfig{}, makeTwoClasses());
-  for (const auto& array :
-       {toLoopMarkers(slam.map(), {}, "map"), toSubmapMarkers(slam.map(), "map"), toOdometryMarkers({}, "map")}) {
+  for (const auto& array : {toLoopMarkers(slam.map(), 1.0, {}, "map"), toSubmapMarkers(slam.map(), 1.0, "map"),
+                            toOdometryMarkers({}, 1.0, "map")}) {
     for (const visualization_msgs::Marker& marker : array.markers) {
       EXPECT_EQ(marker.action, visualization_msgs::Marker::DELETE) << marker.ns;
     }

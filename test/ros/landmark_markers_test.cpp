@@ -37,7 +37,7 @@ std::multiset<std::string> namespaces(const visualization_msgs::MarkerArray& arr
 }
 
 TEST(LandmarkMarkersTest, SmallOnesShareAMarkerAndDoubtfulOnesAreNotShown) {
-  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), {});
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), 1.0, {});
   EXPECT_EQ(array.markers.front().action, visualization_msgs::Marker::DELETEALL);
   EXPECT_EQ(namespaces(array), (std::multiset<std::string>{"pole", "undecided"}));
   EXPECT_EQ(array.markers.back().type, visualization_msgs::Marker::SPHERE_LIST);
@@ -51,7 +51,7 @@ TEST(LandmarkMarkersTest, LargeOnesAreEllipsoidsOfTheChosenSize) {
   map.landmarks[0].components[0].covariance = {4.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0};
   LiveConfig live;
   live.landmark_sigmas = 3.0;
-  const visualization_msgs::MarkerArray array = toLandmarkMarkers(map, makeTwoClasses(), live);
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(map, makeTwoClasses(), 1.0, live);
   ASSERT_EQ(array.markers.size(), 2U);
   const visualization_msgs::Marker& marker = array.markers[1];
   EXPECT_EQ(marker.type, visualization_msgs::Marker::SPHERE);
@@ -63,8 +63,21 @@ TEST(LandmarkMarkersTest, LabelsAndTheLimitOfExistenceFollowTheLiveParameters) {
   LiveConfig live;
   live.landmark_labels = true;
   live.landmark_min_existence_prob = 0.0;
-  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), live);
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), 1.0, live);
   EXPECT_EQ(namespaces(array).count("labels"), 3U);
+}
+
+TEST(LandmarkMarkersTest, SymbolsAreAsSmallAsAskedForAndProvisionalOnesFainter) {
+  SemanticMap map = makeMap();
+  map.landmarks.resize(1);
+  map.landmarks.push_back(map.landmarks[0]);
+  map.landmarks[1].provisional = true;
+  for (Landmark& landmark : map.landmarks) landmark.components[0].covariance = {1e-6, 0, 0, 0, 1e-6, 0, 0, 0, 1e-6};
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(map, makeTwoClasses(), 0.1, {});
+  const visualization_msgs::Marker& dots = array.markers.back();
+  EXPECT_DOUBLE_EQ(dots.scale.x, 0.2);
+  ASSERT_EQ(dots.colors.size(), 2U);
+  EXPECT_LT(dots.colors[1].a, 0.6F * dots.colors[0].a);
 }
 
 }  // namespace

@@ -1,12 +1,16 @@
 #include <filesystem>
 #include <future>
+#include <mutex>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
+#include <semantic_mht_slam/GetLandmarks.h>
 #include <semantic_mht_slam/LoadMap.h>
 #include <semantic_mht_slam/SaveMap.h>
+#include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SetMode.h>
 
 #include "semantic_mht_slam/io/text_file.h"
@@ -61,6 +65,34 @@ TEST(MapServicesTest, SaveLoadAndGoOnEqualsNeverHavingStopped) {
   const std::vector<geometry_msgs::PoseStamped> trajectory = second.finalTrajectory(600);
   ASSERT_EQ(trajectory.size(), expected.size());
   for (std::size_t i = 0; i < trajectory.size(); ++i) ASSERT_EQ(trajectory[i], expected[i]) << i;
+}
+
+TEST(MapServicesTest, LandmarksAreInTheMapBeforeTheFirstSubmapIsFinished) {
+  DrivingNode driving("early");
+  ASSERT_TRUE(driving.isReady());
+  std::mutex mutex;
+  SemanticMap map;
+  const ros::Subscriber subscriber = driving.node.handle().subscribe<SemanticMap>(
+      "map", 10, boost::function<void(const SemanticMapConstPtr&)>([&](const SemanticMapConstPtr& message) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        map = *message;
+      }));
+  ASSERT_TRUE(driving.feed(0, 20));
+  ASSERT_TRUE(waitFor([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return !map.landmarks.empty();
+  }));
+  EXPECT_EQ(driving.node.value("estimator", "submaps"), "0");
+  const GetLandmarks::Response early = driving.call<GetLandmarks>("get_landmarks");
+  ASSERT_TRUE(early.success) << early.message;
+  ASSERT_FALSE(early.landmarks.empty());
+  for (const Landmark& landmark : early.landmarks) EXPECT_TRUE(landmark.provisional) << landmark.id;
+  EXPECT_TRUE(driving.call<std_srvs::Trigger>("finish_submap").success);
+  const GetLandmarks::Response finished = driving.call<GetLandmarks>("get_landmarks");
+  for (const Landmark& landmark : finished.landmarks) EXPECT_FALSE(landmark.provisional) << landmark.id;
+  std::set<std::uint64_t> ids;
+  for (const Landmark& landmark : finished.landmarks) ids.insert(landmark.id);
+  for (const Landmark& landmark : early.landmarks) EXPECT_EQ(ids.count(landmark.id), 1U) << "ids stay";
 }
 
 TEST(MapServicesTest, FilesThatCannotBeUsedLeaveTheRunningMap) {

@@ -26,7 +26,7 @@ class HypothesisPanelTest : public ::testing::Test {
   HypothesisPanelTest() : loader_("rviz", "rviz::Panel"), node_spinner_(1, &node_queue_) {
     node_.setCallbackQueue(&node_queue_);
     panel_.reset(loader_.createUnmanagedInstance("semantic_mht_slam/HypothesisPanel"));
-    panel_->onInitialize();
+    panel_->initialize(nullptr);
     node_spinner_.start();
   }
 
@@ -110,6 +110,7 @@ TEST_F(HypothesisPanelTest, ClickShowsTheLandmarkItsHistoryAndAlternatives) {
   map.header.frame_id = "map";
   map.classes.resize(1);
   map.classes[0].name = "pole";
+  map.classes[0].color = "#c8aa32";
   map.landmarks.resize(1);
   map.landmarks[0].id = 77;
   map.landmarks[0].observations = 9;
@@ -118,6 +119,8 @@ TEST_F(HypothesisPanelTest, ClickShowsTheLandmarkItsHistoryAndAlternatives) {
   map.landmarks[0].components[1].weight = 0.25;
   advertise<SemanticMap>("map").publish(map);
   EXPECT_TRUE(comesToSay("counters", "landmarks 1"));
+  EXPECT_TRUE(comesToSay("legend", "pole 1"));
+  EXPECT_NE(textOf("legend").find("#c8aa32"), std::string::npos);
   const ros::Publisher clicks = advertise<geometry_msgs::PointStamped>("/clicked_point");
   geometry_msgs::PointStamped click;
   click.header.frame_id = "map";

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/square_drive.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -38,6 +40,27 @@ TEST(SlamTest, LatestFrameFollowsTheDetections) {
   ASSERT_TRUE(slam.parts().latest_frame);
   EXPECT_EQ(slam.parts().latest_frame->stamp, odometryAt(1).stamp);
   EXPECT_EQ(slam.parts().latest_frame->detections.size(), 1U);
+}
+
+TEST(SlamTest, WhatTheOpenSubmapSawIsKnownBeforeItIsFinished) {
+  Slam slam(SlamConfig{}, makeStreetClasses());
+  SquareDrive(1).feed(slam, 0, 30);
+  ASSERT_TRUE(slam.map().submaps().empty());
+  const std::vector<MixtureLandmark> provisional = provisionalLandmarksOf(slam);
+  ASSERT_GT(provisional.size(), 3U);
+  EXPECT_TRUE(landmarksOf(slam).empty());
+  slam.finish();
+  EXPECT_TRUE(provisionalLandmarksOf(slam).empty());
+  const std::vector<MixtureLandmark> finished = landmarksOf(slam);
+  ASSERT_EQ(finished.size(), provisional.size());
+  for (std::size_t i = 0; i < finished.size(); ++i) {
+    EXPECT_EQ(finished[i].id, provisional[i].id);
+    EXPECT_LT((finished[i].position.mean_m - provisional[i].position.mean_m).norm(), 0.3);
+  }
+  SquareDrive(1).feed(slam, 30, 32);
+  for (const MixtureLandmark& landmark : provisionalLandmarksOf(slam)) {
+    EXPECT_EQ(findLandmark(landmark.id, finished), nullptr) << "the map has it";
+  }
 }
 
 }  // namespace

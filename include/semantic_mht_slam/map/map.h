@@ -69,6 +69,12 @@ class Map {
   void forEachLandmarkOf(SubmapId submap,
                          const std::function<void(LandmarkId name, const MixtureLandmark& landmark)>& visit) const;
 
+  /// True if a name is that of a landmark of the map.
+  bool hasLandmark(LandmarkId name) const;
+
+  /// Least existence probability of a landmark of the map.
+  double keepProb() const { return keep_prob_; }
+
   /// Distance from a submap's origin within which it has all its landmarks.
   double reach_m(SubmapId submap) const { return reach_m_[submap]; }
 

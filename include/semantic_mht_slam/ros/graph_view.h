@@ -27,14 +27,17 @@ std::vector<LoopClosure> toLoopClosures(const Map& map, const std::vector<Closur
 /// Closures that are in the graph.
 std::size_t acceptedClosures(const Map& map);
 
-/// Closures as lines between the two keyframes: namespace `accepted` green; `refused`, if `live` asks for them, red.
-visualization_msgs::MarkerArray toLoopMarkers(const Map& map, const LiveConfig& live, const std::string& map_frame);
+/// What is drawn has sizes in `symbol_m`. Closures as lines between the two keyframes: namespace `accepted` green;
+/// `refused`, if `live` asks for them, red.
+visualization_msgs::MarkerArray toLoopMarkers(const Map& map, double symbol_m, const LiveConfig& live,
+                                              const std::string& map_frame);
 
 /// The outline of each finished submap, a rectangle around its keyframes: grey, and orange for those that the newest
 /// submap was compared with.
-visualization_msgs::MarkerArray toSubmapMarkers(const Map& map, const std::string& map_frame);
+visualization_msgs::MarkerArray toSubmapMarkers(const Map& map, double symbol_m, const std::string& map_frame);
 
 /// The odometry as it came in, from the map's origin: what the trajectory would be without corrections.
-visualization_msgs::MarkerArray toOdometryMarkers(const std::vector<Pose>& T_odom_base, const std::string& map_frame);
+visualization_msgs::MarkerArray toOdometryMarkers(const std::vector<Pose>& T_odom_base, double symbol_m,
+                                                  const std::string& map_frame);
 
 }  // namespace semantic_mht_slam

@@ -16,15 +16,18 @@
 namespace semantic_mht_slam {
 
 /// The objects of a frame as boxes in class colours, in the map frame: their extents where they are known, else a size
-/// by class. One marker namespace a class; the first marker clears what was shown before.
+/// by class, of a few times `symbol_m`; and the vehicle, an arrow. One marker namespace a class, and `base`; the
+/// first marker clears what was shown before.
 visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& T_map_odom, const ClassTable& classes,
-                                                const std::string& map_frame);
+                                                double symbol_m, const std::string& map_frame);
 
 /// The landmarks of a map: an ellipsoid in the class colour for each component of the mixture, as opaque as its weight
-/// is high; yellow lines from the mean of an undecided landmark to its components; labels if `live` asks for them. One
-/// namespace a class, and `undecided` and `labels`; the first marker clears what was shown before.
-visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes,
+/// is high and the landmark not provisional, two `symbol_m` wide at least; yellow lines from the mean of an undecided
+/// landmark to its components; labels if `live` asks for them. One namespace a class, and `undecided` and `labels`; the
+/// first marker clears what was shown before.
+visualization_msgs::MarkerArray toLandmarkMarkers(const SemanticMap& map, const ClassTable& classes, double symbol_m,
                                                   const LiveConfig& live);
+
 /// Extracted objects as the boxes of their points in class colours, in the frame of the scan. One marker namespace a
 /// class; the first marker clears what was shown before.
 visualization_msgs::MarkerArray toBoxMarkers(const std::vector<ExtractedObject>& objects, const ClassTable& classes,

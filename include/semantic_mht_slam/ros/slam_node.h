@@ -12,6 +12,7 @@
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
+#include <semantic_mht_slam/GetLandmarks.h>
 #include <semantic_mht_slam/LoadMap.h>
 #include <semantic_mht_slam/SaveMap.h>
 #include <semantic_mht_slam/SetMode.h>
@@ -93,6 +94,7 @@ class SlamNode {
   bool resume(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   void expectAt(const geometry_msgs::PoseWithCovarianceStamped& message);
   void refuseInitialPose(const std::string& problem);
+  bool getLandmarks(GetLandmarks::Request& request, GetLandmarks::Response& response);
   bool saveMap(SaveMap::Request& request, SaveMap::Response& response);
   bool loadMap(LoadMap::Request& request, LoadMap::Response& response);
   bool setMode(SetMode::Request& request, SetMode::Response& response);

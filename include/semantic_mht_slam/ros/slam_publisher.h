@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -34,6 +35,7 @@ class SlamPublisher {
   /// Objects and hypotheses of the newest frame if it is a new one, and the map if a submap was finished.
   void publishFrame(const Slam& slam, const LiveConfig& live);
 
+  /// The landmarks of the finished submaps.
   void publishMap(const Slam& slam, const LiveConfig& live);
 
   /// Landmarks of the newest map, loop closures and submaps once more, drawn as `live` says.
@@ -59,13 +61,17 @@ class SlamPublisher {
   /// A loaded map takes the place of the one before.
   void showLoaded(const Slam& slam, const LiveConfig& live);
 
-  /// Landmarks of the newest published map.
+  /// What the topic `map` shows.
+  const SemanticMap& map() const { return shown_; }
+
+  /// Landmarks of the newest published map, without provisional ones.
   std::size_t landmarks() const { return map_.landmarks.size(); }
 
   /// Loop closures in it.
   std::size_t loops() const { return loops_; }
 
  private:
+  void publishProvisional(const Slam& slam, const LiveConfig& live);
   void sendPose(const StampedPose& T_map_base, const Pose& T_odom_base, const LiveConfig& live);
 
   const NodeConfig config_;
@@ -89,7 +95,10 @@ class SlamPublisher {
   std::size_t loops_ = 0;
   std::vector<Pose> odometry_;
   std::mutex trajectory_mutex_;
-  SemanticMap map_;
+  SemanticMap map_;                     ///< of the finished submaps
+  SemanticMap shown_;                   ///< with what the open submap adds
+  std::atomic<double> symbol_m_ = 1.0;  ///< size of what is drawn without a size of its own
+  ros::WallTime next_provisional_;
 };
 
 }  // namespace semantic_mht_slam

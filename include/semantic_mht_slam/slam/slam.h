@@ -164,6 +164,10 @@ std::optional<StampedPose> latestPoseOf(const Slam& slam);
 /// The landmarks of the map at their corrected places, map frame, by rising id.
 std::vector<MixtureLandmark> landmarksOf(const Slam& slam);
 
+/// What the open submap has seen and the map lacks, by rising id, map frame: fused over the hypotheses as if it ended
+/// now. Ids stay, places and existence may change until the submap is finished.
+std::vector<MixtureLandmark> provisionalLandmarksOf(const Slam& slam);
+
 /// The hypotheses of the current submap, most likely first; empty for the method `odometry`.
 const std::vector<MapHypothesis>& hypothesesOf(const Slam& slam);
 

@@ -12,6 +12,10 @@ namespace semantic_mht_slam {
 /// The landmarks of a map at their corrected places, map frame, by rising id.
 std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph);
 
+/// Of the landmarks seen in a submap that is not finished, those that would be new to the map; map frame.
+std::vector<MixtureLandmark> landmarksBeyond(const Map& map, const std::vector<MixtureLandmark>& seen,
+                                             const Pose& T_map_submap);
+
 /// What earlier passes know of the surroundings of a submap that begins where `prior` says; what was seen in the newest
 /// `recent_submaps` submaps is of the present pass. Landmarks are of use within `reach_m`.
 EarlierMap earlierMapAround(const RegistrationPrior& prior, const Map& map, const MapGraph& graph,

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Fills the tables of README.md that stand between "<!-- results: NAME -->" and "<!-- /results -->" from benchmarks.
-    scripts/fill_readme.py BENCHMARK [SEMIREAL] [--readme FILE]
+"""Fills the tables of docs/kitti.md that stand between "<!-- results: NAME -->" and "<!-- /results -->" from benchmarks.
+    scripts/fill_kitti_page.py BENCHMARK [SEMIREAL] [--page FILE]
 BENCHMARK is the output folder of `benchmark --objects best,noisy --seeds 1-5` on 00, 05, 06 and 07 (results.csv,
 and results.json for the systems to compare with). SEMIREAL is that of one with `--sequences 00 --odometries vo_orb --objects
 semireal`: the associations of 00 with lidar-like objects, whose cells stay as they are without it. Times stay, too: those of
-a benchmark are of several runs at once. Needs no ROS; the same results give the same README. Ends with code 1, and changes
+a benchmark are of several runs at once. Needs no ROS; the same results give the same page. Ends with code 1, and changes
 nothing, if a run or a column is missing.
 """
 import argparse
@@ -27,7 +27,7 @@ CASE = ["sequence", "odometry", "objects", "method"]
 
 
 class Missing(Exception):
-    """A run, a column or a place in the README."""
+    """A run, a column or a place in the page."""
 
 
 def number(text, where):
@@ -116,11 +116,11 @@ def association(results, present):
         for method in ("dpmhm", "mhm", "ukf"):
             row = before.get(f"{name}, `{method}`", [])
             if len(row) != len(head):
-                raise Missing(f"README: no row '{name}, `{method}`' with {len(head)} cells, of which the time stays")
+                raise Missing(f"kitti.md: no row '{name}, `{method}`' with {len(head)} cells, of which the time stays")
             for i, sequence in enumerate(SEQUENCES, 1):
                 known = associated_objects(results, sequence, objects)
                 if known is None:
-                    print(f"fill_readme: {sequence} of '{row[0]}' stays: no run with the objects 'semireal'")
+                    print(f"fill_kitti_page: {sequence} of '{row[0]}' stays: no run with the objects 'semireal'")
                     continue
                 case = (sequence, "vo_orb", known, method)
                 row[i] = f"{results.median('association_local_f1', *case):.3f}".lstrip("0")
@@ -170,7 +170,7 @@ def filled(text, results):
         block = re.compile(rf"(<!-- results: {name} -->)(.*?)(<!-- /results -->)", re.DOTALL)
         found = block.findall(text)
         if len(found) != 1:
-            raise Missing(f"README: {len(found)} places between '<!-- results: {name} -->' and '<!-- /results -->', not 1")
+            raise Missing(f"kitti.md: {len(found)} places between '<!-- results: {name} -->' and '<!-- /results -->', not 1")
         content = make(results, found[0][1])
         if "\n" in content:
             content = f"\n\n{content}\n\n"
@@ -181,16 +181,16 @@ def filled(text, results):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("benchmarks", nargs="+", type=Path, metavar="FOLDER", help="BENCHMARK, then SEMIREAL if wanted")
-    parser.add_argument("--readme", type=Path, default=Path(__file__).resolve().parent.parent / "README.md")
+    parser.add_argument("--page", type=Path, default=Path(__file__).resolve().parent.parent / "docs" / "kitti.md")
     arguments = parser.parse_args()
     try:
-        before = arguments.readme.read_text()
+        before = arguments.page.read_text()
         after = filled(before, Results(arguments.benchmarks))
     except (Missing, OSError, KeyError, json.JSONDecodeError) as problem:
-        print(f"fill_readme: {problem}", file=sys.stderr)
+        print(f"fill_kitti_page: {problem}", file=sys.stderr)
         return 1
-    arguments.readme.write_text(after)
-    print(f"fill_readme: {arguments.readme} {'is as it was' if after == before else 'is filled'}")
+    arguments.page.write_text(after)
+    print(f"fill_kitti_page: {arguments.page} {'is as it was' if after == before else 'is filled'}")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""scripts/fill_readme.py on a benchmark in which seed N of every method has the figure N, and the package's README."""
+"""scripts/fill_kitti_page.py on a benchmark in which seed N of every method has the figure N, and the package's page."""
 import json
 
 import pytest
@@ -7,7 +7,7 @@ from conftest import REPOSITORY, run
 HEADER = ("sequence,odometry,objects,objects_are,method,seed,status,raw_se3_m,se3_m,running_mean_m,association_local_f1,"
           "hypotheses_mean,closures_accepted,closures_wrong\n")
 SEQUENCES = ("00", "05", "06", "07")
-README = (REPOSITORY / "README.md").read_text()
+PAGE = (REPOSITORY / "docs" / "kitti.md").read_text()
 
 
 def rows_of(sequence, odometry, objects):
@@ -21,8 +21,8 @@ def rows_of(sequence, odometry, objects):
 class Filled:
     def __init__(self, folder):
         self.folder = folder
-        self.readme = folder / "README.md"
-        self.readme.write_text(README)
+        self.page = folder / "kitti.md"
+        self.page.write_text(PAGE)
         references = [{"sequence": sequence, "name": name, "figures": {"se3_m": 6.5}} for sequence in SEQUENCES
                       for name in ("slam_orbslam2_stereo", "slam_suma")]
         (folder / "results.json").write_text(json.dumps({"references": references}))
@@ -31,11 +31,11 @@ class Filled:
 
     def fill(self, header=HEADER):
         (self.folder / "results.csv").write_text(header + "".join(self.rows))
-        return run(REPOSITORY / "scripts/fill_readme.py", self.folder, "--readme", self.readme)
+        return run(REPOSITORY / "scripts/fill_kitti_page.py", self.folder, "--page", self.page)
 
     def lines(self, begin):
-        """Different lines of the README that begin like this."""
-        return {line for line in self.readme.read_text().splitlines() if line.startswith(begin)}
+        """Different lines of the page that begin like this."""
+        return {line for line in self.page.read_text().splitlines() if line.startswith(begin)}
 
 
 @pytest.fixture
@@ -50,15 +50,15 @@ def test_cells_are_medians_of_the_seeds(filled):
     assert filled.lines("| `mhm`") == {"| `mhm` | 3.25 | 8.50 | 3.25 | 8.50 |"}
     (camera_like,) = filled.lines("| camera-like, `ukf`")
     assert camera_like.startswith("| camera-like, `ukf` | .730 | .730 | .730 | .730 | 3.0 | ")
-    assert "None of 624,000 accepted closures of all 624 runs is wrong" in filled.readme.read_text()
+    assert "None of 624,000 accepted closures of all 624 runs is wrong" in filled.page.read_text()
 
 
 def test_filling_again_changes_nothing(filled):
     assert filled.fill().returncode == 0
-    once = filled.readme.read_text()
-    assert once != README
+    once = filled.page.read_text()
+    assert once != PAGE
     assert filled.fill().returncode == 0
-    assert filled.readme.read_text() == once
+    assert filled.page.read_text() == once
 
 
 def test_what_is_missing_is_named_and_nothing_changes(filled):
@@ -71,7 +71,7 @@ def test_what_is_missing_is_named_and_nothing_changes(filled):
     answer = filled.fill(HEADER.replace(",se3_m", ",rmse_m"))
     assert answer.returncode == 1
     assert "no column 'se3_m'" in answer.stdout
-    assert filled.readme.read_text() == README
+    assert filled.page.read_text() == PAGE
 
 
 def test_real_objects_have_no_associations_and_semireal_ones_take_their_place(filled):
