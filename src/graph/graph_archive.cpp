@@ -58,7 +58,7 @@ void transfer(StateArchive& archive, PriorFactor& prior) {
 
 /// Without the cost of odometry, which `PoseGraph` makes again.
 void transfer(StateArchive& archive, NodeState& node) {
-  archive(node.block, node.landmarks, node.loops, node.priors);
+  archive(node.block, node.landmarks, node.loops, node.priors, node.shared_errors);
 }
 
 void transfer(StateArchive& archive, LoopState3& loop) {
@@ -129,7 +129,7 @@ void Hierarchy::transfer(StateArchive& archive) {
 }
 
 void Skeleton::Link::transfer(StateArchive& archive) {
-  archive(from, to, is_robust);
+  archive(from, to, is_robust, shared_errors);
   transferCost(archive, cost);
 }
 

@@ -47,10 +47,11 @@ struct PriorFactor {
 };
 
 struct NodeState {
-  std::array<double, kPoseBlock> block;              ///< estimate, as Ceres sees it
-  std::unique_ptr<RelativePose3Cost> odometry_cost;  ///< from the node before; none for the first
-  std::vector<std::int64_t> landmarks;               ///< without duplicates, also where two that it saw were merged
-  std::vector<int> loops;                            ///< loop closures with an end here
+  std::array<double, kPoseBlock> block;               ///< estimate, as Ceres sees it
+  std::unique_ptr<RelativePose3Cost> odometry_cost;   ///< from the node before; none for the first
+  SharedErrors shared_errors = SharedErrors::Zero();  ///< of that odometry
+  std::vector<std::int64_t> landmarks;                ///< without duplicates, also where two that it saw were merged
+  std::vector<int> loops;                             ///< loop closures with an end here
   std::vector<PriorFactor> priors;
 
   Pose pose() const {

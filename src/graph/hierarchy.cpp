@@ -34,13 +34,6 @@ LiftedLink lift(const LoopConstraint& loop, const Pose& T_hub_from, const Pose& 
 
 }  // namespace
 
-PoseCov errorCov(const Pose& T_world_to, const Eigen::MatrixXd& step_cov) {
-  Matrix6d by_step = Matrix6d::Zero();
-  by_step.topRightCorner<3, 3>() = T_world_to.rotation.conjugate().toRotationMatrix();
-  by_step.bottomLeftCorner<3, 3>().setIdentity();
-  return by_step * step_cov * by_step.transpose();
-}
-
 Hierarchy::Hierarchy(const PoseGraphConfig& config) : config_(config), skeleton_(config.loop_cauchy_scale) {}
 
 int Hierarchy::nearestHub(int node) const {
@@ -62,9 +55,26 @@ void Hierarchy::addHub(GraphState& graph, const LoopReview& review, int newest) 
   const int before = firstOf(hub - 1);
   const Pose T_before_new = graph.nodes[before].pose().inverse() * T_world_new;
   Subgraph chunk(graph, range(before, newest + 1), Surroundings::kIgnored, config_);
-  const auto step_cov = chunk.poseStepCovariance(newest);
-  const PoseCov cov = step_cov ? errorCov(T_world_new, *step_cov) : review.odometryCov(before, newest);
-  skeleton_.setActive(skeleton_.addLink(hub - 1, hub, T_before_new, cov), true);
+  const auto known = chunk.marginal(newest);
+  const PoseCov cov = known ? known->cov : review.odometryCov(before, newest);
+  const SharedErrors shared = known ? known->shared : SharedErrors(SharedErrors::Zero());
+  skeleton_.setActive(skeleton_.addLink(hub - 1, hub, T_before_new, cov, shared), true);
+}
+
+std::optional<std::vector<NodeMarginal>> Hierarchy::marginals(GraphState& graph) const {
+  auto result = skeleton_.marginals();
+  const int newest = graph.nodeCount() - 1;
+  if (!result || result->empty() || chunkOf(newest) + 1 != skeleton_.hubs()) return std::nullopt;
+  for (NodeMarginal& hub : *result) hub.node = firstOf(hub.node);
+  const NodeMarginal last = result->back();
+  if (last.node == newest) return result;
+  Subgraph behind(graph, range(last.node, newest + 1), Surroundings::kIgnored, config_);
+  const std::optional<NodeMarginal> relative = behind.marginal(newest);
+  if (!relative) return std::nullopt;
+  const Matrix6d to_newest = adjoint(graph.nodes[newest].pose().inverse() * graph.nodes[last.node].pose());
+  result->push_back({newest, to_newest * last.cov * to_newest.transpose() + relative->cov,
+                     to_newest * last.shared + relative->shared});
+  return result;
 }
 
 std::optional<int> Hierarchy::addLiftedLink(const GraphState& graph, const LoopReview& review,

@@ -14,10 +14,6 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
-/// Covariance of the error e (translation, rotation; see `BatchGraph`) of a relative pose, from that of a step of its
-/// end (rotation, translation in the world).
-PoseCov errorCov(const Pose& T_world_to, const Eigen::MatrixXd& step_cov);
-
 /// Keeps the skeleton of a graph: which node belongs to which chunk, condensed links along the drive, links for loop
 /// closures, and carries what the skeleton finds back to the nodes.
 class Hierarchy {
@@ -39,6 +35,9 @@ class Hierarchy {
 
   /// Takes over the states of loop closures and adds new priors; true if the skeleton has to be solved for them.
   bool update(GraphState& graph, const LoopReview& review);
+
+  /// See `PoseGraph::coarseMarginals`.
+  std::optional<std::vector<NodeMarginal>> marginals(GraphState& graph) const;
 
   /// Puts the hubs where their nodes are.
   void synchronize(const GraphState& graph);

@@ -10,6 +10,7 @@
 #include "graph_archive.h"
 #include "hierarchy.h"
 #include "loop_review.h"
+#include "marginals.h"
 #include "pose_graph_checks.h"
 #include "subgraph.h"
 
@@ -35,6 +36,8 @@ class PoseGraph::Impl {
   PoseGraphUpdate optimize();
   PoseGraphUpdate optimizeFully();
   Subgraph whole(GraphState& graph) const;
+  std::optional<std::vector<NodeMarginal>> coarseMarginals() const { return hierarchy_.marginals(graph_); }
+  const PoseGraphConfig& config() const { return config_; }
   LoopDecision decision(int loop) const;
   void transfer(StateArchive& archive);
 
@@ -62,6 +65,7 @@ int PoseGraph::Impl::addNode(const PoseNode& node) {
   writeBlock(before * node.T_previous_node, state.block.data());
   if (index > 0) {
     state.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_node, node.odometry_cov.inverse());
+    state.shared_errors = node.shared_errors;
   }
   for (const LandmarkSighting& sighting : node.sightings) graph_.addSighting(sighting);
   odometry_.push_back({node.T_previous_node, node.odometry_cov});
@@ -278,19 +282,16 @@ double PoseGraph::cost() const {
   return nodes() == 0 ? 0.0 : impl_->whole(impl_->graph_).cost();
 }
 
-std::optional<PoseCov> PoseGraph::poseCovariance(int node) const {
-  require(node >= 0 && node < nodes(), "there is no such node");
-  if (node == 0) return PoseCov::Zero();
-  const auto step_cov = impl_->whole(impl_->graph_).poseStepCovariance(node);
-  if (!step_cov) return std::nullopt;
-  return errorCov(pose(node), *step_cov);
+std::optional<GraphMarginals> PoseGraph::marginals() const {
+  return marginalsOf(impl_->graph_, impl_->config());
 }
 
-std::optional<Eigen::Matrix3d> PoseGraph::landmarkCovariance(std::int64_t id) const {
-  if (nodes() == 0) return std::nullopt;
-  const auto cov = impl_->whole(impl_->graph_).landmarkCovariance(impl_->graph_.keptNumber(id));
-  if (!cov) return std::nullopt;
-  return Eigen::Matrix3d(*cov);
+std::optional<std::vector<NodeMarginal>> PoseGraph::coarseMarginals() const {
+  return impl_->coarseMarginals();
+}
+
+std::int64_t PoseGraph::keptNumber(std::int64_t id) const {
+  return impl_->graph_.keptNumber(id);
 }
 
 }  // namespace semantic_mht_slam

@@ -9,6 +9,7 @@
 #include <ceres/types.h>
 
 #include "lent_problem.h"
+#include "marginals.h"
 #include "solver_steps.h"
 
 namespace semantic_mht_slam {
@@ -61,9 +62,10 @@ void Skeleton::setPose(int hub, const Pose& pose) {
   writeBlock(pose, blocks_[hub].data());
 }
 
-int Skeleton::addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov) {
+int Skeleton::addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov, const SharedErrors& shared_errors) {
   Link& link = links_.emplace_back();
   link.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
+  link.shared_errors = shared_errors;
   link.from = from;
   link.to = to;
   return static_cast<int>(links_.size()) - 1;
@@ -96,6 +98,26 @@ void Skeleton::setRobust(int index, bool is_robust) {
   if (link.id == nullptr) return;
   setActive(index, false);
   setActive(index, true);
+}
+
+std::optional<std::vector<NodeMarginal>> Skeleton::marginals() const {
+  std::vector<std::vector<int>> cliques;
+  for (const Link& link : links_) {
+    if (link.id != nullptr) cliques.push_back({link.from, link.to});
+  }
+  PoseInformation poses(hubs(), cliques);
+  for (const Link& link : links_) {
+    if (link.id == nullptr) continue;
+    poses.add(*link.cost, link.is_robust ? &loss_ : nullptr, link.from, block(link.from), link.to, block(link.to),
+              link.shared_errors);
+  }
+  if (!poses.solve()) return std::nullopt;
+  std::vector<NodeMarginal> result;
+  for (int hub = 0; hub < hubs(); ++hub) {
+    result.push_back(
+        {hub, errorCov(pose(hub), poses.ownStepCov(hub, hub)), sharedErrors(pose(hub), poses.sharedStep(hub))});
+  }
+  return result;
 }
 
 Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {

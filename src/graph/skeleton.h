@@ -3,6 +3,7 @@
 #include <array>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,8 @@ class Skeleton {
 
   /// Joins two different hubs, or a hub with the world (`kWorld` as `from`), without robust loss. Returns the number
   /// of the link, which is not active yet.
-  int addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov);
+  int addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov,
+              const SharedErrors& shared_errors = SharedErrors::Zero());
   void setActive(int link, bool is_active);
   bool isActive(int link) const { return links_[link].id != nullptr; }
 
@@ -42,6 +44,9 @@ class Skeleton {
 
   /// Mahalanobis distance squared of a link from the estimate.
   double mahalanobisSq(int link) const;
+
+  /// How far the hubs may be off by the links that are active; empty if they are not determined.
+  std::optional<std::vector<NodeMarginal>> marginals() const;
 
   struct Outcome {
     std::string failure;  ///< empty, or why nothing was changed
@@ -57,6 +62,7 @@ class Skeleton {
  private:
   struct Link {
     std::unique_ptr<RelativePose3Cost> cost;
+    SharedErrors shared_errors = SharedErrors::Zero();
     int from = 0;
     int to = 0;
     bool is_robust = false;

@@ -8,6 +8,7 @@
 #include <ceres/solver.h>
 
 #include "lent_problem.h"
+#include "marginals.h"
 #include "solver_steps.h"
 
 namespace semantic_mht_slam {
@@ -217,40 +218,53 @@ double Subgraph::cost() {
   return cost;
 }
 
-std::optional<Eigen::MatrixXd> Subgraph::covarianceOf(const double* block, int size) {
+/// What the shared errors of the odometry between the nodes weigh on the steps of the variable ones.
+Eigen::MatrixXd Subgraph::sharedGradient(int columns) const {
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(columns, kSharedErrors);
+  int first = 0;  // column of the node
+  for (const int node : nodes_) {
+    const int before = first - (isVariable(node - 1) ? 6 : 0);
+    const NodeState& state = graph_.nodes[node];
+    if (isInside(node - 1) && !state.shared_errors.isZero(0.0)) {
+      const WhitenedRelation relation =
+          whiten(*state.odometry_cost, nullptr, graph_.nodes[node - 1].block.data(), state.block.data());
+      const SharedErrors whitened = state.odometry_cost->squareRoot() * state.shared_errors;
+      if (isVariable(node - 1)) gradient.middleRows<6>(before) += relation.by_from.transpose() * whitened;
+      if (isVariable(node)) gradient.middleRows<6>(first) += relation.by_to.transpose() * whitened;
+    }
+    if (isVariable(node)) first += 6;
+  }
+  return gradient;
+}
+
+std::optional<NodeMarginal> Subgraph::marginal(int node) {
   ceres::Problem::EvaluateOptions options;
   int first = 0;
   int columns = 0;
-  const auto take = [&](double* candidate, int step_size) {
-    if (candidate == block) first = columns;
-    options.parameter_blocks.push_back(candidate);
-    columns += step_size;
-  };
-  for (const int node : nodes_) {
-    if (isVariable(node)) take(graph_.nodes[node].block.data(), 6);
+  if (!isVariable(node)) return std::nullopt;
+  for (const int other : nodes_) {
+    if (!isVariable(other)) continue;
+    if (other == node) first = columns;
+    options.parameter_blocks.push_back(graph_.nodes[other].block.data());
+    columns += 6;
   }
-  for (auto& [id, position_m] : landmarks_) take(position_m.data(), 3);
+  for (auto& [id, position_m] : landmarks_) {
+    options.parameter_blocks.push_back(position_m.data());
+    columns += 3;
+  }
   ceres::CRSMatrix jacobian;
   if (!problem_.Evaluate(options, nullptr, nullptr, nullptr, &jacobian)) return std::nullopt;
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(normalMatrix(jacobian));
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) return std::nullopt;
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(columns, size);
-  unit.middleRows(first, size).setIdentity();
-  Eigen::MatrixXd covariance = factor.solve(unit).middleRows(first, size);
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(columns, 6);
+  unit.middleRows<6>(first).setIdentity();
+  const Eigen::MatrixXd effect = factor.solve(unit);
+  Eigen::MatrixXd covariance = effect.middleRows<6>(first);
   covariance = 0.5 * (covariance + covariance.transpose()).eval();
   if (!covariance.allFinite()) return std::nullopt;
-  return covariance;
-}
-
-std::optional<Eigen::MatrixXd> Subgraph::poseStepCovariance(int node) {
-  if (!isVariable(node)) return std::nullopt;
-  return covarianceOf(graph_.nodes[node].block.data(), 6);
-}
-
-std::optional<Eigen::MatrixXd> Subgraph::landmarkCovariance(std::int64_t id) {
-  const auto found = landmarks_.find(id);
-  if (found == landmarks_.end()) return std::nullopt;
-  return covarianceOf(found->second.data(), 3);
+  const Pose T_world_node = graph_.nodes[node].pose();
+  const Eigen::MatrixXd shared = effect.transpose() * sharedGradient(columns);
+  return NodeMarginal{node, errorCov(T_world_node, covariance), sharedErrors(T_world_node, shared)};
 }
 
 }  // namespace semantic_mht_slam

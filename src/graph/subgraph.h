@@ -43,10 +43,8 @@ class Subgraph {
   /// Half the squared whitened errors, without robust losses.
   double cost();
 
-  /// Covariance of the 6 step coordinates (rotation, translation; see `PoseManifold`) of a variable node, or of a
-  /// landmark's 3 coordinates; empty if the problem is singular.
-  std::optional<Eigen::MatrixXd> poseStepCovariance(int node);
-  std::optional<Eigen::MatrixXd> landmarkCovariance(std::int64_t id);
+  /// What all this knows of a variable node; empty if the problem is singular.
+  std::optional<NodeMarginal> marginal(int node);
 
  private:
   bool isVariable(int node) const;
@@ -56,7 +54,7 @@ class Subgraph {
   void addLandmark(std::int64_t id);
   void addHeldSightings(const LandmarkState& landmark, const Eigen::Vector3d& seen_inside_m, double* block);
   void add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to);
-  std::optional<Eigen::MatrixXd> covarianceOf(const double* block, int size);
+  Eigen::MatrixXd sharedGradient(int columns) const;
   void restore(const std::vector<double>& backup);
   std::vector<double> snapshot() const;
   void storeLandmarks();

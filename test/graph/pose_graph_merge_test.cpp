@@ -242,7 +242,7 @@ TEST(MergeInputTest, TwoSightingsOfOneNodeAreWeighedTogether) {
   ASSERT_EQ(graph.optimizeFully().failure, "");
   EXPECT_NEAR(graph.landmark(1)->x(), 1.1, 1e-3);
   EXPECT_EQ(*graph.landmark(1), *graph.landmark(2));
-  EXPECT_NEAR((*graph.landmarkCovariance(1))(0, 0), 0.5, 0.01);  // the loss takes a little weight
+  EXPECT_NEAR(graph.marginals()->landmarks.at(graph.keptNumber(1))(0, 0), 0.5, 0.01);  // the loss takes a little weight
 }
 
 }  // namespace

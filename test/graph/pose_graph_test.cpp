@@ -70,23 +70,23 @@ TEST_P(PoseGraphTest, ErrorsAreOfTheSizeThatTheCovariancesSay) {
   ASSERT_EQ(driven.graph.optimizeFully().failure, "");
   double sum = 0.0;
   int count = 0;
+  const std::optional<GraphMarginals> marginals = driven.graph.marginals();
+  ASSERT_TRUE(marginals.has_value());
   for (int i = 10; i < driven.graph.nodes(); i += 10) {
-    const auto cov = driven.graph.poseCovariance(i);
-    ASSERT_TRUE(cov.has_value());
+    const PoseCov& cov = marginals->poses[static_cast<std::size_t>(i)];
     const Pose error = driven.graph.pose(i).inverse() * drive.steps[i].T_world_node;
     Eigen::Matrix<double, 6, 1> e;
     e << error.translation_m, logRotation(error.rotation);
-    sum += e.dot(cov->ldlt().solve(e));
+    sum += e.dot(cov.ldlt().solve(e));
     ++count;
   }
   // The poses are strongly correlated, so the mean of 5 has the spread of hardly more than one: 6 +- 4 sqrt(12).
   EXPECT_LT(sum / count, 6.0 + 4.0 * std::sqrt(12.0));
   const auto& [id, truth] = *drive.landmarks_m.begin();
-  const auto cov = driven.graph.landmarkCovariance(id);
-  ASSERT_TRUE(cov.has_value());
-  EXPECT_GT(cov->eigenvalues().real().minCoeff(), 0.0);
+  const Eigen::Matrix3d& cov = marginals->landmarks.at(driven.graph.keptNumber(id));
+  EXPECT_GT(cov.eigenvalues().real().minCoeff(), 0.0);
   const Eigen::Vector3d error = *driven.graph.landmark(id) - truth;
-  EXPECT_LT(error.dot(cov->ldlt().solve(error)), 30.0);
+  EXPECT_LT(error.dot(cov.ldlt().solve(error)), 30.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, PoseGraphTest, testing::Range<std::uint64_t>(1, 6));
@@ -106,10 +106,10 @@ TEST(PoseGraphPriorTest, PriorPullsAsTheCovariancesSay) {
   EXPECT_EQ(graph.optimize().failure, "");
   EXPECT_NEAR(graph.pose(1).translation_m.x(), 1.5, 1e-6);  // halfway between two equally certain values
   EXPECT_EQ(graph.pose(0).translation_m.norm(), 0.0);
-  const auto cov = graph.poseCovariance(1);
-  ASSERT_TRUE(cov.has_value());
-  EXPECT_NEAR((*cov)(0, 0), 0.005, 1e-9);
-  EXPECT_TRUE(graph.poseCovariance(0)->isZero());
+  const auto marginals = graph.marginals();
+  ASSERT_TRUE(marginals.has_value());
+  EXPECT_NEAR(marginals->poses[1](0, 0), 0.005, 1e-9);
+  EXPECT_TRUE(marginals->poses[0].isZero());
 }
 
 TEST(PoseGraphPriorTest, CovarianceOfOdometryAloneIsWhatWasPutIn) {
@@ -121,9 +121,13 @@ TEST(PoseGraphPriorTest, CovarianceOfOdometryAloneIsWhatWasPutIn) {
   second.odometry_cov(0, 4) = second.odometry_cov(4, 0) = 0.003;
   graph.addNode(second);
   ASSERT_EQ(graph.optimize().failure, "");
-  const auto cov = graph.poseCovariance(1);
-  ASSERT_TRUE(cov.has_value());
-  EXPECT_TRUE(cov->isApprox(second.odometry_cov, 1e-9)) << *cov;
+  const auto marginals = graph.marginals();
+  ASSERT_TRUE(marginals.has_value());
+  EXPECT_TRUE(marginals->poses[1].isApprox(second.odometry_cov, 1e-9)) << marginals->poses[1];
+  const auto coarse = graph.coarseMarginals();
+  ASSERT_TRUE(coarse.has_value());
+  EXPECT_EQ(coarse->back().node, 1);
+  EXPECT_TRUE(coarse->back().total().isApprox(second.odometry_cov, 1e-9));
 }
 
 TEST(PoseGraphInputTest, BadInputThrowsAndChangesNothing) {
@@ -167,7 +171,8 @@ TEST(PoseGraphInputTest, EmptyGraphHasNothingToDo) {
   EXPECT_EQ(graph.optimize().failure, "");
   EXPECT_EQ(graph.cost(), 0.0);
   EXPECT_FALSE(graph.landmark(3).has_value());
-  EXPECT_FALSE(graph.landmarkCovariance(3).has_value());
+  EXPECT_TRUE(graph.marginals()->landmarks.empty());
+  EXPECT_FALSE(graph.coarseMarginals().has_value());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,7 +45,8 @@ struct LandmarkSighting {
 /// A new node of the graph.
 struct PoseNode {
   Pose T_previous_node;  ///< odometry from the node before; for the first one its pose in the world
-  PoseCov odometry_cov = PoseCov::Identity();  ///< integrated along the node before; not used for the first one
+  PoseCov odometry_cov = PoseCov::Identity();         ///< integrated along the node before; not used for the first one
+  SharedErrors shared_errors = SharedErrors::Zero();  ///< beside `odometry_cov`; widen the covariances of the estimate
   std::vector<LandmarkSighting> sightings;
 };
 
@@ -68,6 +70,22 @@ struct LoopDecision {
   int loop = 0;  ///< what `addLoopClosure` returned
   LoopState state = LoopState::kAccepted;
   double mahalanobis_sq = 0.0;  ///< from the present estimate
+};
+
+/// How far the estimate may be off, the first node being held.
+struct GraphMarginals {
+  std::vector<PoseCov> poses;                         ///< by node; a step in the frame of the node
+  std::map<std::int64_t, Eigen::Matrix3d> landmarks;  ///< world frame, m^2; by the number that each is kept by
+};
+
+/// The same of one node, what comes from errors that all steps share apart: the covariance is `cov` plus
+/// `shared * shared^T`.
+struct NodeMarginal {
+  int node = 0;
+  PoseCov cov = PoseCov::Zero();
+  SharedErrors shared = SharedErrors::Zero();
+
+  PoseCov total() const { return cov + shared * shared.transpose(); }
 };
 
 /// What one call of `optimize` did.
@@ -140,12 +158,17 @@ class PoseGraph {
   /// robust losses.
   double cost() const;
 
-  /// Covariance of a node's pose, conditional on the held first one; a step as in `PoseCov` in the frame of the
-  /// node. Looks at the whole graph: for requests, not for every node. Empty if the problem is singular.
-  std::optional<PoseCov> poseCovariance(int node) const;
+  /// Covariances of everything, in time that grows with the graph: for the end of a drive, not for every node. Empty if
+  /// the problem is singular.
+  std::optional<GraphMarginals> marginals() const;
 
-  /// Covariance of a landmark in the world frame; empty if it is unknown or the problem is singular.
-  std::optional<Eigen::Matrix3d> landmarkCovariance(std::int64_t id) const;
+  /// The same of the first node of every chunk and of the newest node, ascending, by the skeleton as `optimize` left
+  /// it: in little of the time of a call of that. Wider than they need be: landmarks that are seen from two chunks tie
+  /// them together only where they were seen again.
+  std::optional<std::vector<NodeMarginal>> coarseMarginals() const;
+
+  /// The number by which a landmark is kept.
+  std::int64_t keptNumber(std::int64_t id) const;
 
   /// Everything that was added and estimated, so that a graph that reads it goes on to the last bit as the one that
   /// wrote it (see `StateArchive`). Reads only into an empty graph, else throws std::logic_error; throws InputError
