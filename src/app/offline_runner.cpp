@@ -45,22 +45,28 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
     }
     result.step_ms.push_back(step_watch.elapsed_ms());
     result.mapping_ms.push_back(1e3 * (slam.parts().mapping_s - mapping_before_s));
-    if (is_used) result.online_trajectory.push_back(*latestPoseOf(slam));
+    if (is_used) {
+      result.online_trajectory.push_back(*latestPoseOf(slam));
+      result.online_trajectory_cov.push_back(latestCovOf(slam).value_or(unknownPoseCov()));
+    }
     result.hypotheses.push_back(static_cast<int>(hypothesesOf(slam).size()));
     progress(i + 1, recording.odometry.size());
   }
   for (; frame != recording.detector_frames.end(); ++frame) slam.addDetections(frame->stamp, frame->detections);
   slam.finish();
+  const MapUncertainty uncertainty = uncertaintyOf(slam);
   result.seconds = watch.elapsed_s();
   result.whole_trajectory = trajectoryOf(slam);
   result.trajectory.assign(result.whole_trajectory.begin() + static_cast<std::ptrdiff_t>(known),
                            result.whole_trajectory.end());
+  const std::vector<FixedAxesCov> whole_cov = trajectoryCovOf(slam, uncertainty);
+  result.trajectory_cov.assign(whole_cov.begin() + static_cast<std::ptrdiff_t>(known), whole_cov.end());
   result.state = slam.snapshot();
   result.sessions = slam.parts().sessions.summary(slam.map());
   result.detector_range_m = slam.parts().range_factor * Length::kReferenceRange_m;
   if (slam.parts().mapper) result.odometry_model = slam.parts().mapper->odometryModel();
   result.counters = slam.parts().assembler.counters();
-  result.landmarks = landmarksOf(slam);
+  result.landmarks = landmarksOf(slam, uncertainty);
   result.loop_closures = loopClosures(slam.map());
   if (slam.parts().closer) result.submap_checks = submapResults(slam.map(), *slam.parts().closer);
   result.identity = slam.map().identity().ledger();

@@ -57,12 +57,41 @@ Json summarizeHypotheses(const std::vector<int>& hypotheses) {
           {"frames_with", histogram}};
 }
 
+/// The upper triangle of a covariance, each number behind a comma.
+template <class Matrix>
+std::string formatUpper(const Matrix& cov) {
+  std::string text;
+  for (Eigen::Index row = 0; row < cov.rows(); ++row) {
+    for (Eigen::Index column = row; column < cov.cols(); ++column) text += "," + formatDouble(cov(row, column));
+  }
+  return text;
+}
+
+/// Names of these numbers: position x, y, z, rotation a, b, c about the same axes.
+std::string upperNames() {
+  const std::string axes = "xyzabc";
+  std::string text;
+  for (std::size_t row = 0; row < axes.size(); ++row) {
+    for (std::size_t column = row; column < axes.size(); ++column) {
+      text += std::string(",cov_") + axes[row] + axes[column];
+    }
+  }
+  return text;
+}
+
+std::string formatCovariances(const std::vector<FixedAxesCov>& covs) {
+  std::string text = "row" + upperNames() + "\n";
+  for (std::size_t row = 0; row < covs.size(); ++row) text += std::to_string(row) + formatUpper(covs[row]) + "\n";
+  return text;
+}
+
 std::string formatLandmarks(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes) {
-  std::string text = "id,class,x,y,z,existence,observations\n";
+  std::string text = "id,class,x,y,z,existence,observations,sxx,sxy,sxz,syy,syz,szz\n";
   for (const MixtureLandmark& landmark : landmarks) {
     text += std::to_string(landmark.id) + "," + classes[landmark.mostLikelyClass()].name;
     for (int i = 0; i < 3; ++i) text += "," + formatFixed(landmark.position.mean_m[i], 4);
-    text += "," + formatFixed(landmark.existence_prob, 6) + "," + std::to_string(landmark.observations) + "\n";
+    text += "," + formatFixed(landmark.existence_prob, 6) + "," + std::to_string(landmark.observations) +
+            formatUpper(landmark.position.cov_m2) + "\n";
   }
   return text;
 }
@@ -79,7 +108,8 @@ std::string formatAssociations(const std::vector<DetectionAssociation>& associat
 std::string formatLoopClosures(const std::vector<LoopClosureResult>& closures) {
   std::string text =
       "query_frame,match_frame,accepted,score,inliers,tx,ty,tz,qx,qy,qz,qw,source,reason,"
-      "histogram_divergence,descriptor_score,topology_score,scene_score,loop_prob\n";
+      "histogram_divergence,descriptor_score,topology_score,scene_score,loop_prob" +
+      upperNames() + "\n";
   for (const auto& [query_frame, match_frame, record] : closures) {
     text += std::to_string(query_frame) + "," + std::to_string(match_frame) + "," + (record.is_accepted ? "1" : "0") +
             "," + formatFixed(record.score, 4) + "," + std::to_string(record.inliers);
@@ -91,7 +121,7 @@ std::string formatLoopClosures(const std::vector<LoopClosureResult>& closures) {
                                place.scene_score, place.loop_prob}) {
       text += "," + formatFixed(score, 4);
     }
-    text += "\n";
+    text += formatUpper(inFixedAxes(record.T_match_query, record.cov)) + "\n";
   }
   return text;
 }
@@ -216,6 +246,8 @@ void writeResultFiles(const std::string& folder, const Recording& recording, con
   writeFileAtomically(folder + "/trajectory.txt", formatKittiTrajectory(poses));
   writeFileAtomically(folder + "/trajectory.tum", formatTumTrajectory(result.trajectory));
   writeFileAtomically(folder + "/trajectory_online.tum", formatTumTrajectory(result.online_trajectory));
+  writeFileAtomically(folder + "/trajectory_cov.csv", formatCovariances(result.trajectory_cov));
+  writeFileAtomically(folder + "/trajectory_online_cov.csv", formatCovariances(result.online_trajectory_cov));
   writeFileAtomically(folder + "/loop_closures.csv", formatLoopClosures(result.loop_closures));
   writeFileAtomically(folder + "/submaps.csv", formatSubmaps(result.submap_checks));
   writeFileAtomically(folder + "/landmarks.csv", formatLandmarks(result.landmarks, classes));

@@ -195,4 +195,9 @@ double CentroidBias::odometryScale() const {
   return mean_[BiasLayout{biased_count_}.motion(0)];
 }
 
+double CentroidBias::scaleStddev() const {
+  const int scale = BiasLayout{biased_count_}.motion(0);
+  return config_.enabled ? std::sqrt(cov_(scale, scale)) : 0.0;
+}
+
 }  // namespace semantic_mht_slam

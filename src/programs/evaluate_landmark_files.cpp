@@ -44,7 +44,8 @@ NumberedLandmarks readRows(const std::string& path, const std::string& content) 
 }
 
 NumberedLandmarks readTable(const std::string& path) {
-  const CsvReader reader({"x", "y"}, {"z", "class", "id", "landmark", "existence", "observations"});
+  const CsvReader reader({"x", "y"}, {"z", "class", "id", "landmark", "existence", "observations", "sxx", "sxy", "sxz",
+                                      "syy", "syz", "szz"});
   NumberedLandmarks result;
   reader.read(path, [&](const CsvRow& row) {
     PointLandmark landmark;

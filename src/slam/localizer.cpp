@@ -75,9 +75,10 @@ bool Localizer::agree(const Find& a, const Find& b) const {
 }
 
 bool Localizer::search(const Scene& seen, const Map& map, const LoopCloser& closer) {
-  const std::optional<Pose> T_map_base = closer.locate(map, seen);
-  if (!T_map_base) return false;
-  const Find find{driven_.way_m, *T_map_base * window_.back().T_odom_base.inverse()};
+  const std::optional<FoundPlace> found = closer.locate(map, seen);
+  if (!found) return false;
+  const Pose T_map_base = map.T_map_keyframe(found->match) * found->T_match_base;
+  const Find find{driven_.way_m, T_map_base * window_.back().T_odom_base.inverse()};
   const bool is_confirmed =
       std::any_of(finds_.begin(), finds_.end(), [&](const Find& earlier) { return agree(earlier, find); });
   finds_.push_back(find);
@@ -85,24 +86,27 @@ bool Localizer::search(const Scene& seen, const Map& map, const LoopCloser& clos
   if (!is_confirmed) return false;
   finds_.clear();
   is_located_ = true;
-  settle(find.T_map_odom);
+  settle(*found, map);
   return true;
 }
 
 bool Localizer::track(const Scene& seen, const Map& map, const LoopCloser& closer) {
   const Pose T_map_base = *T_map_odom_ * window_.back().T_odom_base;
-  const std::optional<Pose> found = closer.findNear(map, seen, T_map_base, told_stddev_m_, driven_ - fixed_);
+  const std::optional<FoundPlace> found = closer.findNear(map, seen, T_map_base, told_stddev_m_, driven_ - fixed_);
   if (!found) return false;
-  settle(*found * window_.back().T_odom_base.inverse());
+  settle(*found, map);
   return true;
 }
 
-void Localizer::settle(const Pose& T_map_odom) {
+void Localizer::settle(const FoundPlace& found, const Map& map) {
   const Frame& newest = window_.back();
-  T_map_odom_ = T_map_odom;
+  const Pose T_map_base = map.T_map_keyframe(found.match) * found.T_match_base;
+  T_map_odom_ = T_map_base * newest.T_odom_base.inverse();
+  found_by_ = found.match;
   fixed_ = driven_;
   told_stddev_m_ = 0.0;
-  fix_ = MapFix{newest.stamp, newest.T_odom_base, T_map_odom * newest.T_odom_base};
+  fix_ =
+      MapFix{newest.stamp, newest.T_odom_base, *T_map_odom_ * newest.T_odom_base, inFixedAxes(T_map_base, found.cov)};
 }
 
 }  // namespace semantic_mht_slam

@@ -135,17 +135,18 @@ std::vector<LoopClosureRecord> LoopCloser::revisits(const Map& map, const Closur
   return found;
 }
 
-std::optional<Pose> LoopCloser::locate(const Map& map, const Scene& scene) const {
+std::optional<FoundPlace> LoopCloser::locate(const Map& map, const Scene& scene) const {
   const std::vector<PlaceMatch> matches = places_.locate(units_.toPlaces(scene), placePoses(map));
   if (matches.empty()) return std::nullopt;
   const PlaceMatch& best = matches.front();
   // A match that passed every check but would not be believed alone is one of two that confirm each other.
   if (!best.accepted && best.refusal != PlaceRefusal::kUnsupported) return std::nullopt;
-  return map.T_map_keyframe(keyframe_of_place_[best.match]) * units_.fromPlaces(best).T_match_query;
+  const PlaceMatch found = units_.fromPlaces(best);
+  return FoundPlace{keyframe_of_place_[best.match], found.T_match_query, found.cov};
 }
 
-std::optional<Pose> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double stddev_m,
-                                         const Motion& motion) const {
+std::optional<FoundPlace> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base,
+                                               double stddev_m, const Motion& motion) const {
   const RegistrationPrior prior = driftPrior(T_map_base, stddev_m, motion, odometry_, config_.revisit);
   const LoopClosureRecord* best = nullptr;
   const std::vector<LoopClosureRecord> records = findInMap(map, scene, prior, classes_, registration_, config_.revisit);
@@ -153,7 +154,7 @@ std::optional<Pose> LoopCloser::findNear(const Map& map, const Scene& scene, con
     if (record.is_verified && (best == nullptr || record.score > best->score)) best = &record;
   }
   if (best == nullptr) return std::nullopt;
-  return map.T_map_keyframe(best->match_keyframe) * best->T_match_query;
+  return FoundPlace{best->match_keyframe, best->T_match_query, best->cov};
 }
 
 void transfer(StateArchive& archive, SubmapFeatures& features) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/models/dead_reckoning.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -44,10 +45,12 @@ PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sight
     node.T_previous_node = expectedStep(odometry, T_previous_keyframe);
     node.odometry_cov = stepCovariance(odometry, motionTo(keyframe) - motionTo(previous), T_previous_keyframe);
     node.odometry_cov += poseCov(kLeastStep_m, kLeastStep_rad);
+    node.shared_errors = sharedErrorsOf(odometry.systematic, T_previous_keyframe);
   }
   if (T_map_odom_start_ && !map.T_map_keyframes().empty()) {
     node.T_previous_node = map.T_map_keyframes().back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
     node.odometry_cov = poseCov(kSessionStddev_m, kSessionStddev_rad);
+    node.shared_errors.setZero();
   }
   T_map_odom_start_.reset();
   for (const Sighting& sighting : sightings) {
@@ -130,6 +133,10 @@ Pose MapGraph::T_map_odom(const Map& map) const {
 
 std::optional<Eigen::Vector3d> MapGraph::landmark(LandmarkId id) const {
   return graph_.landmark(id);
+}
+
+LandmarkId MapGraph::keptName(LandmarkId id) const {
+  return static_cast<LandmarkId>(graph_.keptNumber(static_cast<std::int64_t>(id)));
 }
 
 void MapGraph::transfer(StateArchive& archive, const Map& map) {

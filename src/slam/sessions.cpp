@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/slam/sessions.h"
 
+#include <algorithm>
+
 #include "semantic_mht_slam/common/state_archive.h"
 
 namespace semantic_mht_slam {
@@ -18,7 +20,20 @@ const MapFix* Sessions::latestFix() const {
   return fixes.empty() ? nullptr : &fixes.back();
 }
 
-TrajectoryRecord Sessions::record(const Map& map) const {
+std::vector<StampedPose> Sessions::odometryAfter(Stamp stamp) const {
+  const auto begin = odometry_.begin() + static_cast<std::ptrdiff_t>(sessions_.back().first_odometry);
+  const auto first = std::upper_bound(begin, odometry_.end(), stamp,
+                                      [](Stamp earlier, const StampedPose& pose) { return earlier < pose.stamp; });
+  return {first, odometry_.end()};
+}
+
+bool Sessions::isNewestFix(const Map& map, KeyframeId keyframe) const {
+  const MapFix* fix = latestFix();
+  return keyframe >= sessions_.back().first_keyframe &&
+         (fix == nullptr || fix->stamp < map.keyframes()[keyframe].stamp);
+}
+
+TrajectoryRecord Sessions::record(const Map& map, const MapUncertainty& uncertainty) const {
   TrajectoryRecord record{odometry_, {}};
   KeyframeId next(0);
   for (auto session = sessions_.begin(); session != sessions_.end(); ++session) {
@@ -27,7 +42,9 @@ TrajectoryRecord Sessions::record(const Map& map) const {
     for (const KeyframeId end = after == sessions_.end() ? map.keyframes().nextId() : after->first_keyframe; next < end;
          ++next) {
       const Keyframe& keyframe = map.keyframes()[next];
-      record.sessions.back().fixes.push_back({keyframe.stamp, keyframe.T_odom_base, map.T_map_keyframe(next)});
+      const bool is_known = uncertainty.keyframes.has(next);
+      record.sessions.back().fixes.push_back({keyframe.stamp, keyframe.T_odom_base, map.T_map_keyframe(next),
+                                              is_known ? uncertainty.keyframes[next] : unknownPoseCov()});
     }
   }
   return record;
@@ -46,8 +63,8 @@ std::vector<SessionSummary> Sessions::summary(const Map& map) const {
 }
 
 void transfer(StateArchive& archive, MapFix& fix) {
-  auto& [stamp, T_odom_base, T_map_base] = fix;
-  archive(stamp, T_odom_base, T_map_base);
+  auto& [stamp, T_odom_base, T_map_base, cov] = fix;
+  archive(stamp, T_odom_base, T_map_base, cov);
 }
 
 void Sessions::Session::transfer(StateArchive& archive) {

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/stopwatch.h"
-#include "semantic_mht_slam/mapping/fusion.h"
 #include "semantic_mht_slam/slam/surroundings.h"
+
+#include "newest_pose.h"
 
 namespace semantic_mht_slam {
 
@@ -42,6 +43,7 @@ SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
                   {},
                   {},
                   {}};
+  parts.odometry = OdometryLearning(config.mapper.odometry).model();
   fitParts(config, classes, parts);
   return parts;
 }
@@ -80,6 +82,7 @@ bool Slam::addOdometry(const StampedPose& T_odom_base) {
   if (is_later && !parts_.continuity.goesOn(T_odom_base)) beginSession();
   if (!parts_.assembler.addOdometry(T_odom_base)) return false;
   parts_.continuity.add(T_odom_base);
+  reckon(T_odom_base, parts_);
   parts_.sessions.add(T_odom_base);
   processReadyFrames();
   return true;
@@ -131,7 +134,7 @@ void Slam::follow(const Frame& frame) {
   calibrated.detections = parts_.mapper->calibrated(frame.detections);
   const double reach_m = fitted_.mapper.alignment.radius_m;
   const bool is_found = localizer.add(calibrated, parts_.map, *parts_.closer);
-  if (is_found) parts_.sessions.add(localizer.fix());
+  if (is_found) takeFix(localizer, parts_);
   const auto* localizing = std::get_if<Localizing>(&parts_.mode);
   if (localizing != nullptr && !localizing->until_found) return;
   if (is_found) {
@@ -151,13 +154,14 @@ void Slam::endSubmap() {
   FinishedSubmap finished = parts_.mapper->finish();
   parts_.mapping_s += watch.elapsed_s();
   Map& map = parts_.map;
-  const OdometryModel& odometry = parts_.mapper->odometryModel();
+  const OdometryModel& odometry = parts_.odometry = parts_.mapper->odometryModel();
   parts_.closer->setOdometry(odometry);
   CutSubmap cut = cutIntoKeyframes(finished.submap, finished.frames, parts_.submap_driven,
                                    fitted_.mapper.detection.keep_prob, odometry, fitted_.back_end.keyframe);
   const IdRange<KeyframeId> keyframes =
       map.add(std::make_shared<const Submap>(std::move(finished.submap)), std::move(cut.keyframes));
   parts_.graph.add(map, keyframes, cut.sightings, odometry);
+  if (keyframes.front() == KeyframeId(0)) noteStart(parts_);
   parts_.graph.settle(map);
   parts_.closer->add(map);
   const ClosureQuery query{keyframes, std::move(finished.alignment), parts_.prediction, parts_.tied_at_m};
@@ -169,11 +173,14 @@ void Slam::endSubmap() {
     }
     if (is_any_verified) parts_.graph.settle(map);
   }
+  tieToNewestKeyframe(parts_);
 }
 
 void Slam::finish() {
   endSubmap();
-  if (!parts_.map.keyframes().empty()) parts_.graph.settle(parts_.map, true);
+  if (parts_.map.keyframes().empty()) return;
+  parts_.graph.settle(parts_.map, true);
+  tieToNewestKeyframe(parts_);
 }
 
 /// Every change of mode.
@@ -210,6 +217,7 @@ void Slam::beginSession() {
   parts_.assembler.beginSession();
   parts_.continuity.clear();
   parts_.latest_frame.reset();
+  parts_.latest.reset();
   parts_.sessions.begin(parts_.map.keyframes().nextId());
   if (parts_.map.submaps().empty()) return;
   enter(Localizing{Localizer(fitted_.localization), is_mapping_wanted});
@@ -220,6 +228,7 @@ bool Slam::expectAt(const Pose& T_map_base, double stddev_m) {
   const std::optional<StampedPose> odometry = parts_.sessions.latestOdometry();
   if (localizer == nullptr || !odometry) return false;
   localizer->expectAt(T_map_base * odometry->T_world_base.inverse(), stddev_m);
+  expectPose(T_map_base, stddev_m, fitted_.back_end.revisit.base_stddev_rad, parts_);
   return true;
 }
 
@@ -247,16 +256,6 @@ std::optional<StampedPose> latestPoseOf(const Slam& slam) {
   const std::optional<StampedPose> odometry = slam.parts().sessions.latestOdometry();
   if (!odometry) return std::nullopt;
   return StampedPose{odometry->stamp, slam.T_map_odom() * odometry->T_world_base};
-}
-
-std::vector<MixtureLandmark> landmarksOf(const Slam& slam) {
-  return landmarksOf(slam.map(), slam.parts().graph);
-}
-
-std::vector<MixtureLandmark> provisionalLandmarksOf(const Slam& slam) {
-  const SlamParts& parts = slam.parts();
-  if (!parts.mapper || !parts.mapper->isOpen()) return {};
-  return landmarksBeyond(parts.map, fuseHypotheses(parts.mapper->hypotheses()), parts.prediction.prior.T_a_b);
 }
 
 const std::vector<MapHypothesis>& hypothesesOf(const Slam& slam) {

@@ -71,7 +71,8 @@ void fitParts(const SlamConfig& fitted, const ClassTable& classes, SlamParts& pa
   parts.graph = MapGraph(fitted.back_end, classes);
   parts.mapper.emplace(fitted.mapper, classes, fitted.registration);
   parts.closer.emplace(fitted.back_end, classes, fitted.registration, parts.range_factor);
-  parts.closer->setOdometry(parts.mapper->odometryModel());
+  parts.odometry = parts.mapper->odometryModel();
+  parts.closer->setOdometry(parts.odometry);
 }
 
 void Slam::fitToDetector() {

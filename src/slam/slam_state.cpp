@@ -20,6 +20,11 @@ void transfer(StateArchive& archive, InputCounters& counters) {
   archive(detections_at_origin, covariances_unknown, frames_standing);
 }
 
+void transfer(StateArchive& archive, UncertainPose& pose) {
+  auto& [T_world_base, cov, shared] = pose;
+  archive(T_world_base, cov, shared);
+}
+
 void FrameAssembler::WaitingFrame::transfer(StateArchive& archive) {
   archive(index, stamp, detections);
 }
@@ -70,6 +75,7 @@ void transferInput(StateArchive& archive, const SlamConfig& config, SlamParts& p
   }
   archive(parts.assembler, parts.sessions, parts.latest_frame, parts.rng);
   archive(parts.driven, parts.submap_driven, parts.tied_at_m, parts.prediction);
+  archive(parts.latest, parts.start_cov);
   transferMode(archive, config, parts);
 }
 
@@ -90,7 +96,9 @@ void transferGraph(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
 void transferMapper(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
   if (!parts.mapper) return;
   archive(*parts.mapper);
-  if (archive.isReading()) parts.closer->setOdometry(parts.mapper->odometryModel());
+  if (!archive.isReading()) return;
+  parts.odometry = parts.mapper->odometryModel();
+  parts.closer->setOdometry(parts.odometry);
 }
 
 /// What is written and read together, in the order in which it is read.
@@ -100,9 +108,9 @@ struct Section {
   void (*transfer)(StateArchive& archive, const SlamConfig& config, SlamParts& parts);
 };
 
-constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 3, transferInput},
+constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 4, transferInput},
                                  {"submaps", 2, transferSubmaps},   {"keyframes", 3, transferKeyframes},
-                                 {"graph", 2, transferGraph},       {"hypotheses", 5, transferMapper}};
+                                 {"graph", 3, transferGraph},       {"hypotheses", 5, transferMapper}};
 
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
 void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,

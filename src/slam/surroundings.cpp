@@ -20,10 +20,25 @@ MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, co
 
 }  // namespace
 
-std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph) {
+void addPoseShare(const FixedAxesCov& pose_cov, const Eigen::Vector3d& lever_m, double floor_m,
+                  MixtureLandmark& landmark) {
+  Eigen::Matrix3d share = carried(pose_cov, lever_m).topLeftCorner<3, 3>();
+  share.diagonal().array() += floor_m * floor_m;
+  for (MixtureComponent& component : landmark.components) component.position.cov_m2 += share;
+  landmark.position.cov_m2 += share;
+}
+
+std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph, const MapUncertainty& uncertainty) {
   std::vector<MixtureLandmark> landmarks;
-  map.forEachLandmark([&](SubmapId submap, const MixtureLandmark& landmark) {
-    landmarks.push_back(inMap(map, graph, submap, landmark));
+  map.forEachLandmark([&](SubmapId submap, const MixtureLandmark& seen) {
+    MixtureLandmark& landmark = landmarks.emplace_back(inMap(map, graph, submap, seen));
+    const KeyframeId from = map.keyframesOf(submap).front();
+    const Eigen::Vector3d lever_m = landmark.position.mean_m - map.T_map_keyframe(from).translation_m;
+    addPoseShare(uncertainty.keyframes[from], lever_m, graph.sightingFloor_m(), landmark);
+    const auto known = uncertainty.landmarks.find(graph.keptName(landmark.id));
+    if (known == uncertainty.landmarks.end()) return;
+    landmark.position.cov_m2 = known->second;
+    if (landmark.components.size() == 1) landmark.components.front().position.cov_m2 = known->second;
   });
   return landmarks;
 }

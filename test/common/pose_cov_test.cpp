@@ -30,7 +30,7 @@ TEST(PoseCovTest, ErrorsOnTheRightHaveTheCovarianceInFixedAxes) {
     for (int k = 0; k <= i; ++k) root(i, k) = (i < 3 ? 0.3 : 0.02) * rng.normal();
     root(i, i) += i < 3 ? 0.5 : 0.03;
   }
-  const FixedAxesCov cov = inFixedAxes(pose, root * root.transpose());
+  const FixedAxesCov cov = inFixedAxes(pose, PoseCov(root * root.transpose()));
   double sum = 0.0;
   constexpr int kErrors = 3000;
   for (int n = 0; n < kErrors; ++n) {

@@ -102,6 +102,8 @@ TEST_P(CentroidBiasWithScaleError, HeightIsFoundAgainstThatFromNear) {
 TEST_P(CentroidBiasWithScaleError, IsNotInventedWhereThereIsNone) {
   const CentroidBias bias = estimate(3, GetParam(), false);
   EXPECT_NEAR(bias.odometryScale(), 1.0 / (1.0 + GetParam()) - 1.0, 0.003);
+  EXPECT_LT(std::abs(bias.odometryScale() - (1.0 / (1.0 + GetParam()) - 1.0)), 4.0 * bias.scaleStddev());
+  EXPECT_LT(bias.scaleStddev(), 0.01) << "less than before anything was seen";
   for (const ClassIndex c : {kPole, kVehicle}) {
     for (const double range_m : {8.0, 15.0, 25.0, 35.0}) {
       EXPECT_NEAR(bias.at(c, range_m).range_m, 0.0, 0.01 + 0.0015 * range_m) << c << " " << range_m;

@@ -61,8 +61,9 @@ TEST_F(ProgramsTest, OfflineRunWritesEveryFileAndTwoRunsWriteTheSameBytes) {
   ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments()).exit_code, 0);
   ASSERT_EQ(runProgramOfPackage("slam_offline", "--bag '" + drive_ + "/drive.bag' --output '" + again + "'").exit_code,
             0);
-  for (const char* file : {"trajectory.txt", "trajectory.tum", "loop_closures.csv", "submaps.csv", "landmarks.csv",
-                           "associations.csv", "config.yaml", "map.bag"}) {
+  for (const char* file :
+       {"trajectory.txt", "trajectory.tum", "trajectory_cov.csv", "trajectory_online_cov.csv", "loop_closures.csv",
+        "submaps.csv", "landmarks.csv", "associations.csv", "config.yaml", "map.bag"}) {
     EXPECT_EQ(readFile(output_ + "/" + file), readFile(again + "/" + file)) << file << " of folder and bag";
   }
   EXPECT_NE(readFile(output_ + "/report.json").find("\"se3_m\""), std::string::npos);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/slam/map_uncertainty.h"
+
 #include "support/square_drive.h"
 
 namespace semantic_mht_slam {
@@ -66,6 +68,33 @@ TEST_F(MapGraphTest, AClosureThatOdometryContradictsJoinsNothingAndOneThatFitsJo
   EXPECT_NE(*graph_.landmark(8), *graph_.landmark(1));
   EXPECT_EQ(*graph_.landmark(8), *graph_.landmark(4));
   EXPECT_EQ(map_.identity().landmarkOf(8), 4U);
+}
+
+TEST_F(MapGraphTest, WhatIsNotKnownOfTheScaleGrowsWithTheDistanceFromTheFirstPose) {
+  for (std::size_t i = 0; i < 8; ++i) add(10.0 * static_cast<double>(i), 1 + i);
+  const MapUncertainty exact = uncertaintyOf(map_, graph_, {gaugeCov(), 0.0});
+  const MapUncertainty scaled = uncertaintyOf(map_, graph_, {gaugeCov(), 0.01});
+  const MapUncertainty coarse = coarseUncertaintyOf(map_, graph_, {gaugeCov(), 0.01});
+  ASSERT_EQ(scaled.keyframes.size(), 8U);
+  const KeyframeId last(7);
+  EXPECT_NEAR(scaled.keyframes[last](0, 0) - exact.keyframes[last](0, 0), 0.7 * 0.7, 1e-3);
+  EXPECT_NEAR(scaled.keyframes[last](1, 1) - exact.keyframes[last](1, 1), 0.0, 1e-6);
+  EXPECT_NEAR(coarse.keyframes[last](0, 0), scaled.keyframes[last](0, 0), 0.1 * scaled.keyframes[last](0, 0));
+  EXPECT_NEAR(newestKeyframe(map_, graph_, {gaugeCov(), 0.01}).total()(0, 0), coarse.keyframes[last](0, 0), 0.05);
+  EXPECT_NEAR(scaled.landmarks.at(8)(0, 0) - exact.landmarks.at(8)(0, 0), 0.71 * 0.71, 1e-3);
+  EXPECT_LT(exact.keyframes[KeyframeId(0)].trace(), 1e-5) << "the map begins here";
+}
+
+TEST_F(MapGraphTest, AFirstKeyframeThatIsNotExactMakesEverythingAsInexact) {
+  for (std::size_t i = 0; i < 3; ++i) add(10.0 * static_cast<double>(i), 1 + i);
+  FixedAxesCov start = 0.04 * FixedAxesCov::Identity();
+  start.bottomRightCorner<3, 3>() = 1e-4 * Eigen::Matrix3d::Identity();
+  const MapUncertainty exact = uncertaintyOf(map_, graph_, {gaugeCov(), 0.0});
+  const MapUncertainty moved = uncertaintyOf(map_, graph_, {start, 0.0});
+  const KeyframeId last(2);
+  EXPECT_NEAR(moved.keyframes[last](0, 0) - exact.keyframes[last](0, 0), 0.04, 1e-4);
+  EXPECT_NEAR(moved.keyframes[last](1, 1) - exact.keyframes[last](1, 1), 0.04 + 1e-4 * 400.0, 1e-3) << "swung";
+  EXPECT_NEAR(moved.landmarks.at(3)(1, 1) - exact.landmarks.at(3)(1, 1), 0.04 + 1e-4 * 441.0, 1e-3);
 }
 
 }  // namespace

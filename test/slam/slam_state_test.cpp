@@ -34,6 +34,8 @@ void expectSameResult(const Slam& a, const Slam& b) {
   for (std::size_t i = 0; i < associations_a.size(); ++i) {
     ASSERT_EQ(associations_a[i].landmark, associations_b[i].landmark);
   }
+  ASSERT_EQ(latestCovOf(a).has_value(), latestCovOf(b).has_value());
+  ASSERT_EQ(latestCovOf(a).value_or(unknownPoseCov()), latestCovOf(b).value_or(unknownPoseCov()));
   ASSERT_EQ(a.map().closures().size(), b.map().closures().size());
   ASSERT_EQ(a.parts().assembler.counters().detections, b.parts().assembler.counters().detections);
 }

@@ -35,6 +35,32 @@ TEST(TrajectoryRecordTest, EachSessionPassesThroughItsOwnFixes) {
   }
 }
 
+TEST(TrajectoryRecordTest, CovariancesAreThoseOfTheFixesAndGrowAwayFromThem) {
+  TrajectoryRecord record;
+  for (int i = 0; i <= 40; ++i) record.odometry.push_back(sampleAt(i, i));
+  for (int i = 0; i <= 20; ++i) record.odometry.push_back(sampleAt(i, i));
+  for (int i = 0; i <= 5; ++i) record.odometry.push_back(sampleAt(i, i));
+  const auto fix = [](int i, double variance_m2) {
+    MapFix result = fixAt(i, i, i, 0.0);
+    result.cov = variance_m2 * FixedAxesCov::Identity();
+    result.cov.bottomRightCorner<3, 3>() *= 1e-4;
+    return result;
+  };
+  record.sessions = {{0, {fix(10, 0.1), fix(20, 0.3)}}, {41, {fix(10, 0.2)}}, {62, {}}};
+  const std::vector<FixedAxesCov> covs = trajectoryCovOf(record, OdometryModel{});
+  ASSERT_EQ(covs.size(), record.odometry.size());
+  EXPECT_LT(covs[0](0, 0), 1e-5) << "the map begins here";
+  EXPECT_GT(covs[9](0, 0), covs[1](0, 0));
+  EXPECT_NEAR(covs[10](0, 0), 0.1, 1e-9);
+  EXPECT_NEAR(covs[15](0, 0), 0.2, 1e-9);
+  EXPECT_NEAR(covs[20](0, 0), 0.3, 1e-9);
+  EXPECT_GT(covs[40](0, 0), 0.4);
+  EXPECT_NEAR(covs[51](0, 0), 0.2, 1e-9);
+  EXPECT_GT(covs[41](0, 0), 0.25) << "before the first fix of a later session";
+  EXPECT_GT(covs[61](0, 0), 0.25);
+  EXPECT_GE(covs[62](0, 0), 1e6) << "never found in the map";
+}
+
 TEST(TrajectoryRecordTest, ARecordGivesTheTrajectoryOfItsMomentHoweverTheEstimatorGoesOn) {
   const SquareDrive drive(1);
   Slam slam(defaultsOf(Method::kDpmhm), makeStreetClasses());

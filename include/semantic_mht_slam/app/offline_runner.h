@@ -25,6 +25,8 @@ struct SubmapResult {
 struct RunResult {
   std::vector<StampedPose> trajectory;         ///< T_map_base at every odometry sample of the recording that was used
   std::vector<StampedPose> online_trajectory;  ///< T_map_base as it was known at each of these moments
+  std::vector<FixedAxesCov> trajectory_cov;    ///< of each pose of `trajectory`
+  std::vector<FixedAxesCov> online_trajectory_cov;  ///< the same as it was known live
   std::vector<LoopClosureResult> loop_closures;
   InputCounters counters;
   GraphStatus graph;

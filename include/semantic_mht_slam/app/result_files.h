@@ -15,8 +15,8 @@ namespace semantic_mht_slam {
 /// truth has; camera 0 if its place is known, as KITTI scores it, else the base frame. Empty without ground truth.
 std::optional<TrajectoryError> scoreRun(const Recording& recording, const std::vector<StampedPose>& trajectory);
 
-/// Writes trajectory.txt, trajectory.tum, loop_closures.csv, submaps.csv, landmarks.csv, associations.csv and
-/// config.yaml to `folder`, which must exist.
+/// Writes trajectory.txt, trajectory.tum, both with their covariances beside them, loop_closures.csv, submaps.csv,
+/// landmarks.csv, associations.csv and config.yaml to `folder`, which must exist.
 void writeResultFiles(const std::string& folder, const Recording& recording, const RunResult& result,
                       const SystemConfig& config, const ClassTable& classes);
 

@@ -82,6 +82,9 @@ class CentroidBias {
   /// Relative error of the odometry's scale that all stretches share (true length = (1 + scale) times odometry's).
   double odometryScale() const;
 
+  /// Its standard deviation: ranges that are all off by a factor look like it, so that it is never known exactly.
+  double scaleStddev() const;
+
   /// All that it has learned (see `StateArchive`).
   void transfer(StateArchive& archive);
 

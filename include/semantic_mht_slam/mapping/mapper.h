@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -61,6 +62,12 @@ class Mapper {
 
   /// How the odometry errs, as the finished submaps say.
   const OdometryModel& odometryModel() const { return odometry_.model(); }
+
+  /// Relative standard deviation of the map's lengths: what is not known of the odometry's scale once the detector's
+  /// ranges may be off, too.
+  double scaleStddev() const {
+    return std::max(bias_.scaleStddev(), odometry_.model().systematic.scale_translation.stddev);
+  }
 
   /// The detections without the bias of their classes' centroids, and with the noise of their centroids stated, both as
   /// learned so far.

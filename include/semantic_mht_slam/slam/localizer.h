@@ -48,8 +48,11 @@ class Localizer {
   /// Driven since the newest fix, or since the pose was told.
   double sinceFix_m() const { return (driven_ - fixed_).way_m; }
 
-  /// The newest fix; only after one.
+  /// The newest fix, its covariance being that of what was found, as if the map were exact there; only after one.
   const MapFix& fix() const { return *fix_; }
+
+  /// The keyframe that it was found by.
+  KeyframeId foundBy() const { return found_by_; }
 
  private:
   struct Find {
@@ -61,7 +64,7 @@ class Localizer {
   bool search(const Scene& scene, const Map& map, const LoopCloser& closer);
   bool track(const Scene& scene, const Map& map, const LoopCloser& closer);
   bool agree(const Find& a, const Find& b) const;
-  void settle(const Pose& T_map_odom);
+  void settle(const FoundPlace& found, const Map& map);
 
   LocalizerConfig config_;
   std::deque<Frame> window_;
@@ -74,6 +77,7 @@ class Localizer {
   bool is_located_ = false;
   std::optional<Pose> T_map_odom_;
   std::optional<MapFix> fix_;
+  KeyframeId found_by_;
 };
 
 }  // namespace semantic_mht_slam

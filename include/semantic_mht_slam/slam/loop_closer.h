@@ -35,6 +35,13 @@ struct ClosureQuery {
   double tied_at_m = 0.0;  ///< distance driven when the pose was last known, by other means than closures
 };
 
+/// Where a scene was found in the map.
+struct FoundPlace {
+  KeyframeId match;
+  Pose T_match_base;
+  PoseCov cov = PoseCov::Identity();
+};
+
 /// Finds places that were seen before, and checks them; does not change the map.
 class LoopCloser {
  public:
@@ -61,12 +68,12 @@ class LoopCloser {
   SubmapPrediction predict(const Map& map, const Pose& T_map_submap, double tied_at_m, const Motion& ahead) const;
 
   /// Where a scene is in the map, by its objects alone; needs a second find that agrees. Empty if it is not recognised.
-  std::optional<Pose> locate(const Map& map, const Scene& scene) const;
+  std::optional<FoundPlace> locate(const Map& map, const Scene& scene) const;
 
   /// Where a scene is in the map near an expected pose, `motion` after it was known within `stddev_m`; empty if that is
   /// not clear.
-  std::optional<Pose> findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double stddev_m,
-                               const Motion& motion) const;
+  std::optional<FoundPlace> findNear(const Map& map, const Scene& scene, const Pose& T_map_base, double stddev_m,
+                                     const Motion& motion) const;
 
   /// Of every finished submap.
   const IdVector<SubmapId, SubmapCheck>& checks() const { return checks_; }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "semantic_mht_slam/common/pose.h"
+#include "semantic_mht_slam/common/pose_cov.h"
 #include "semantic_mht_slam/common/stamp.h"
 
 namespace semantic_mht_slam {
@@ -10,6 +10,7 @@ struct MapFix {
   Stamp stamp = 0;
   Pose T_odom_base;
   Pose T_map_base;
+  FixedAxesCov cov = unknownPoseCov();  ///< axes of the map
 };
 
 }  // namespace semantic_mht_slam

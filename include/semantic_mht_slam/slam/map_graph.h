@@ -51,6 +51,14 @@ class MapGraph {
   /// Corrected position of a landmark, map frame; empty if it is not in the graph.
   std::optional<Eigen::Vector3d> landmark(LandmarkId id) const;
 
+  /// See `PoseGraph`; a node is a keyframe, a landmark is kept by one of its names.
+  std::optional<GraphMarginals> marginals() const { return graph_.marginals(); }
+  std::optional<std::vector<NodeMarginal>> coarseMarginals() const { return graph_.coarseMarginals(); }
+  LandmarkId keptName(LandmarkId id) const;
+
+  /// Deviation of a landmark in a keyframe that more detections do not lower.
+  double sightingFloor_m() const { return config_.keyframe.sighting_floor_m; }
+
   const GraphStatus& status() const { return status_; }
 
   /// Into an empty graph, or out of one (see `StateArchive`).

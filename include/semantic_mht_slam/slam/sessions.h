@@ -6,6 +6,7 @@
 
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/slam/map_uncertainty.h"
 #include "semantic_mht_slam/slam/trajectory_record.h"
 
 namespace semantic_mht_slam {
@@ -37,8 +38,18 @@ class Sessions {
   /// The newest fix of the present session; null without any.
   const MapFix* latestFix() const;
 
-  /// What the trajectory is put together from: odometry, keyframes and fixes.
-  TrajectoryRecord record(const Map& map) const;
+  /// The samples of all sessions.
+  const std::vector<StampedPose>& odometry() const { return odometry_; }
+
+  /// The samples of the present session behind a stamp.
+  std::vector<StampedPose> odometryAfter(Stamp stamp) const;
+
+  /// True if the keyframe is of the present session, and no fix of it is newer.
+  bool isNewestFix(const Map& map, KeyframeId keyframe) const;
+
+  /// What the trajectory is put together from: odometry, keyframes and fixes; keyframes with their uncertainty if it is
+  /// given.
+  TrajectoryRecord record(const Map& map, const MapUncertainty& uncertainty = {}) const;
 
   /// All sessions that have odometry.
   std::vector<SessionSummary> summary(const Map& map) const;

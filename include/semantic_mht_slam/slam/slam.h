@@ -16,6 +16,7 @@
 #include "semantic_mht_slam/slam/frame_assembler.h"
 #include "semantic_mht_slam/slam/loop_closer.h"
 #include "semantic_mht_slam/slam/map_graph.h"
+#include "semantic_mht_slam/slam/map_uncertainty.h"
 #include "semantic_mht_slam/slam/mode.h"
 #include "semantic_mht_slam/slam/odometry_continuity.h"
 #include "semantic_mht_slam/slam/sessions.h"
@@ -74,9 +75,12 @@ struct SlamParts {
   OdometryContinuity continuity = {};
   Standstill standing = {};
   DetectorRange detector_range = {};
-  double range_factor = 1.0;        ///< of the detector by the reference, as far as it is known
-  bool is_fitted = false;           ///< the lengths are those of the detector
-  std::vector<Frame> waiting = {};  ///< frames that are mapped when they are
+  double range_factor = 1.0;                 ///< of the detector by the reference, as far as it is known
+  bool is_fitted = false;                    ///< the lengths are those of the detector
+  std::vector<Frame> waiting = {};           ///< frames that are mapped when they are
+  OdometryModel odometry = {};               ///< as far as it is known
+  std::optional<UncertainPose> latest = {};  ///< at the newest odometry sample; none while the vehicle is lost
+  FixedAxesCov start_cov = gaugeCov();       ///< of the first keyframe, which may come long after the first pose
 };
 
 /// Makes mapper, graph and loop closer anew for a configuration whose lengths have changed (see `fittedTo`).
@@ -161,8 +165,17 @@ std::vector<StampedPose> trajectoryOf(const Slam& slam);
 /// T_map_base at the newest odometry sample; empty before the first.
 std::optional<StampedPose> latestPoseOf(const Slam& slam);
 
-/// The landmarks of the map at their corrected places, map frame, by rising id.
+/// Covariance of that pose, axes of the map; empty while the vehicle does not know where it is in the map.
+std::optional<FixedAxesCov> latestCovOf(const Slam& slam);
+
+/// Covariances of the whole map, in time that grows with it; and of each pose of the trajectory by these.
+MapUncertainty uncertaintyOf(const Slam& slam);
+std::vector<FixedAxesCov> trajectoryCovOf(const Slam& slam, const MapUncertainty& uncertainty);
+
+/// The landmarks of the map at their corrected places, map frame, by rising id. Without the uncertainty of the whole
+/// map their covariances are those that go out live, a little wider.
 std::vector<MixtureLandmark> landmarksOf(const Slam& slam);
+std::vector<MixtureLandmark> landmarksOf(const Slam& slam, const MapUncertainty& uncertainty);
 
 /// What the open submap has seen and the map lacks, by rising id, map frame: fused over the hypotheses as if it ended
 /// now. Ids stay, places and existence may change until the submap is finished.

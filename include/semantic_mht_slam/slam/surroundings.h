@@ -6,11 +6,18 @@
 #include "semantic_mht_slam/map/map.h"
 #include "semantic_mht_slam/mapping/earlier_map.h"
 #include "semantic_mht_slam/slam/map_graph.h"
+#include "semantic_mht_slam/slam/map_uncertainty.h"
 
 namespace semantic_mht_slam {
 
-/// The landmarks of a map at their corrected places, map frame, by rising id.
-std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph);
+/// Adds to a landmark what is not known of the pose (axes of the map) that it hangs on, `lever_m` from it, and a
+/// deviation that more detections do not lower.
+void addPoseShare(const FixedAxesCov& pose_cov, const Eigen::Vector3d& lever_m, double floor_m,
+                  MixtureLandmark& landmark);
+
+/// The landmarks of a map at their corrected places, map frame, by rising id; their covariances hold what is not known
+/// of the pose that they were seen from.
+std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph, const MapUncertainty& uncertainty);
 
 /// Of the landmarks seen in a submap that is not finished, those that would be new to the map; map frame.
 std::vector<MixtureLandmark> landmarksBeyond(const Map& map, const std::vector<MixtureLandmark>& seen,

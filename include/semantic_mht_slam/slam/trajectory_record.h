@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/common/stamped_pose.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 #include "semantic_mht_slam/slam/map_fix.h"
 
 namespace semantic_mht_slam {
@@ -24,5 +25,10 @@ struct TrajectoryRecord {
 /// T_map_base at every odometry sample: the odometry, corrected so that it passes through the fixes of its session
 /// (see `correctTrajectory`).
 std::vector<StampedPose> trajectoryOf(const TrajectoryRecord& record);
+
+/// Covariance of each pose of the trajectory, axes of the map: between two fixes the mean of theirs, behind the newest
+/// one with what the odometry errs since. The first pose is where the map begins; a session that was never found in the
+/// map is of unknown covariance.
+std::vector<FixedAxesCov> trajectoryCovOf(const TrajectoryRecord& record, const OdometryModel& odometry);
 
 }  // namespace semantic_mht_slam
