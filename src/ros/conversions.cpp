@@ -77,6 +77,13 @@ geometry_msgs::Pose toMessage(const Pose& pose) {
   return message;
 }
 
+geometry_msgs::PoseWithCovariance toMessage(const Pose& pose, const FixedAxesCov& cov) {
+  geometry_msgs::PoseWithCovariance message;
+  message.pose = toMessage(pose);
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(message.covariance.data()) = cov;
+  return message;
+}
+
 Pose fromMessage(const geometry_msgs::Pose& message) {
   return fromParts(message.position.x, message.position.y, message.position.z, message.orientation);
 }

@@ -225,6 +225,8 @@ void findEstimatorFault(const NodeStatus& now, const NodeStatus& before, Finding
   finding.error(input.count > before.input_failures.count, "an unexpected failure dropped a message: " + input.newest,
                 report + "; reset begins anew if it goes on");
   finding.error(others.count > before.other_failures.count, "unexpected failure of " + others.newest, report);
+  finding.warn(now.estimator.is_lost, "lost: no pose goes out until the vehicle has found itself in the map",
+               "drive on where the map was made, or say where it is on initialpose");
   finding.warn(now.estimator.initial_poses_refused > before.estimator.initial_poses_refused,
                "initialpose is refused: " + now.estimator.initial_pose_problem,
                "set localization by set_mode first, and give a finite pose and covariance in the map frame");

@@ -67,12 +67,7 @@ LoopClosure toMessage(const Map& map, const LoopClosureRecord& record, const std
   message.match_stamp = toRosTime(match.stamp);
   message.accepted = record.is_accepted;
   message.reason = record.reason;
-  message.transform.pose = toMessage(record.T_match_query);
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
-      message.transform.covariance[static_cast<std::size_t>(6 * row + column)] = record.cov(row, column);
-    }
-  }
+  message.transform = toMessage(record.T_match_query, inFixedAxes(record.T_match_query, record.cov));
   message.histogram_divergence = record.place.histogram_divergence;
   message.descriptor_score = record.place.descriptor_score;
   message.topology_score = record.place.topology_score;

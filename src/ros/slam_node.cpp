@@ -110,7 +110,8 @@ void SlamNode::handleSafely(const InputMessage& message) {
   } else if (input_failures_.run(odometry != nullptr ? "odometry" : "objects", [&] { handleTimed(message); })) {
     return;
   }
-  if (odometry != nullptr) other_failures_.run("dead reckoning", [&] { deadReckon(**odometry); });
+  if (odometry == nullptr || !isLocated(slam_->mode())) return;
+  other_failures_.run("dead reckoning", [&] { deadReckon(**odometry); });
 }
 
 void SlamNode::handleTimed(const InputMessage& message) {
@@ -240,7 +241,8 @@ void SlamNode::add(const SemanticObjectArray& message, const Pose& T_base_sensor
 void SlamNode::noteStatus() {
   estimator_.counters = slam_->parts().assembler.counters();
   estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
-  if (!isLocated(slam_->mode())) estimator_.mode += ", lost";
+  estimator_.is_lost = !isLocated(slam_->mode());
+  if (estimator_.is_lost) estimator_.mode += ", lost";
   if (isFollowing(slam_->mode())) estimator_.mode += ", known place";
   if (is_paused_) estimator_.mode += ", paused";
   estimator_.hypotheses = hypothesesOf(*slam_).size();

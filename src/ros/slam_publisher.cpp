@@ -29,6 +29,13 @@ double symbolSize(double range_factor, const SemanticMap& map) {
   return box.isEmpty() ? range_factor : std::max(range_factor, box.sizes().maxCoeff() / kSymbolsAcross);
 }
 
+/// Covariance of a pose that is believed elsewhere than where it is said to be: by as much it is off on purpose.
+FixedAxesCov withGap(const FixedAxesCov& cov, const Pose& believed, const Pose& said) {
+  Eigen::Matrix<double, 6, 1> gap;
+  gap << believed.translation_m - said.translation_m, logRotation(believed.rotation * said.rotation.conjugate());
+  return cov + gap * gap.transpose();
+}
+
 }  // namespace
 
 SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, const ClassTable& classes)
@@ -50,29 +57,36 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
 void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
   const StampedPose latest = *latestPoseOf(slam);
   T_map_odom_ = slam.T_map_odom();
+  odometry_model_ = slam.parts().odometry;
+  latest_ = UncertainPose{latest.T_world_base, latestCovOf(slam).value_or(unknownPoseCov())};
   const Pose T_odom_base = T_map_odom_->inverse() * latest.T_world_base;
   if (odometry_.empty() || (odometry_.back().translation_m - T_odom_base.translation_m).norm() > kOdometrySpacing_m) {
     odometry_.push_back(T_odom_base);
   }
-  sendPose(latest, T_odom_base, live);
+  sendPose(latest.stamp, T_odom_base, live);
 }
 
 void SlamPublisher::publishDeadReckoning(const StampedPose& T_odom_base, const LiveConfig& live) {
   if (!T_map_odom_) return;
-  sendPose({T_odom_base.stamp, *T_map_odom_ * T_odom_base.T_world_base}, T_odom_base.T_world_base, live);
+  const Pose T_map_base = *T_map_odom_ * T_odom_base.T_world_base;
+  latest_ = reckoned(latest_, latest_.T_world_base.inverse() * T_map_base, odometry_model_);
+  latest_.T_world_base = T_map_base;
+  sendPose(T_odom_base.stamp, T_odom_base.T_world_base, live);
 }
 
-void SlamPublisher::sendPose(const StampedPose& T_map_base, const Pose& T_odom_base, const LiveConfig& live) {
-  const Pose followed = correction_.follow(*T_map_odom_, T_odom_base, T_map_base.stamp, live);
+/// The newest pose.
+void SlamPublisher::sendPose(Stamp stamp, const Pose& T_odom_base, const LiveConfig& live) {
+  const Pose followed = correction_.follow(*T_map_odom_, T_odom_base, stamp, live);
   if (config_.publishes_tf) {
-    transform_broadcaster_.sendTransform(
-        toTransform({T_map_base.stamp, followed}, config_.map_frame, config_.odom_frame));
+    transform_broadcaster_.sendTransform(toTransform({stamp, followed}, config_.map_frame, config_.odom_frame));
   }
   geometry_msgs::PoseWithCovarianceStamped message;
-  message.header.stamp = toRosTime(T_map_base.stamp);
+  message.header.stamp = toRosTime(stamp);
   message.header.frame_id = config_.map_frame;
+  const Pose& believed = latest_.T_world_base;
   const bool is_there = live.correction == CorrectionPolicy::kJump;
-  message.pose.pose = toMessage(is_there ? T_map_base.T_world_base : followed * T_odom_base);
+  const Pose said = is_there ? believed : followed * T_odom_base;
+  message.pose = toMessage(said, is_there ? latest_.total() : withGap(latest_.total(), believed, said));
   pose_publisher_.publish(message);
 }
 

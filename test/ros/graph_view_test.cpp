@@ -79,6 +79,13 @@ TEST(GraphViewTest, ClosuresAreLinesAndMessagesOfTheirOwnKind) {
   EXPECT_EQ(find(toLoopMarkers(slam.map(), 1.0, live, "map"), "refused").points.size(), 2 * (all - accepted));
   EXPECT_TRUE(find(toLoopMarkers(slam.map(), 1.0, {}, "map"), "refused").points.empty());
   const std::vector<LoopClosure> messages = toLoopClosures(slam.map(), news.takeNews(slam.map()), "map");
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    const LoopClosureRecord& record = slam.map().closures()[ClosureId(i)];
+    const FixedAxesCov expected = inFixedAxes(record.T_match_query, record.cov);
+    EXPECT_EQ(messages[i].transform.covariance[1], expected(0, 1)) << "row-major, axes of the match frame";
+    EXPECT_EQ(messages[i].transform.covariance[6 * 1 + 5], expected(1, 5));
+    EXPECT_EQ(messages[i].transform.covariance[35], expected(5, 5));
+  }
   ASSERT_EQ(messages.size(), all);
   EXPECT_TRUE(news.takeNews(slam.map()).empty()) << "told already";
   for (const LoopClosure& message : messages) {

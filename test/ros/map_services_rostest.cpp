@@ -165,6 +165,7 @@ TEST(MapServicesTest, AnotherDriveFindsItselfInALoadedMapAndLeavesItAsItIs) {
   const std::string submaps = driving.node.value("estimator", "submaps");
   ASSERT_TRUE(driving.feed(100, 110, 490)) << "stamps go back: another drive";
   EXPECT_TRUE(driving.node.comesToSay("estimator", "mode", "localization, lost"));
+  EXPECT_TRUE(driving.node.comesToReport("estimator", "no pose goes out"));
   ASSERT_TRUE(driving.feed(110, 200, 580));
   EXPECT_TRUE(driving.node.comesToSay("estimator", "mode", "localization"));
   const std::string after = driving.node.value("estimator", "submaps");

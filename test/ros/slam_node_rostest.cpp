@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <gtest/gtest.h>
 #include <nav_msgs/Path.h>
@@ -137,7 +138,12 @@ TEST_F(SlamNodeTest, ReplayedBagGivesTheOfflineTrajectoryAndALaterOneStartsAgain
   for (std::size_t i = 0; i < kFrames; ++i) {
     EXPECT_EQ(toStamp(poses_[i].header.stamp), recording.odometry[i].stamp + kOrigin);
     EXPECT_EQ(poses_[i].header.frame_id, "map");
+    const auto cov = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(poses_[i].pose.covariance.data());
+    EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(cov).info(), Eigen::Success) << "pose " << i;
+    EXPECT_EQ(cov, cov.transpose()) << "pose " << i;
   }
+  EXPECT_LT(poses_.front().pose.covariance[0], 1e-3) << "the map begins at the first pose";
+  EXPECT_GT(poses_.back().pose.covariance[0], poses_.front().pose.covariance[0]);
   const auto T_map_odom = transforms_.lookupTransform("map", "odom", toRosTime(last));
   const Pose T_map_base = fromMessage(T_map_odom.transform) * recording.odometry.back().T_world_base;
   EXPECT_NEAR((T_map_base.translation_m - fromMessage(poses_.back().pose.pose).translation_m).norm(), 0.0, 1e-9)

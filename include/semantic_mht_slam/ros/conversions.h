@@ -3,6 +3,7 @@
 #include <string>
 
 #include <geometry_msgs/Pose.h>
+#include <geometry_msgs/PoseWithCovariance.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
@@ -12,6 +13,7 @@
 #include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
+#include "semantic_mht_slam/common/pose_cov.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
@@ -25,6 +27,9 @@ ros::Time toRosTime(Stamp stamp);
 Stamp toStamp(const ros::Time& time);
 
 geometry_msgs::Pose toMessage(const Pose& pose);
+
+/// A pose with its covariance, which is in the axes of its parent.
+geometry_msgs::PoseWithCovariance toMessage(const Pose& pose, const FixedAxesCov& cov);
 
 /// Quaternions that are not normalised are normalised; a zero quaternion or a number that is not finite stays as it is
 /// and makes the pose invalid.

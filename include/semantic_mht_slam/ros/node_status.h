@@ -23,6 +23,7 @@ struct EstimatorStatus {
   std::size_t resets = 0;                 ///< new maps begun
   std::string method;
   std::string mode = "mapping";
+  bool is_lost = false;  ///< where the vehicle is in the map is not known
   std::size_t hypotheses = 0;
   std::size_t landmarks = 0;  ///< of the finished submaps
   std::size_t submaps = 0;    ///< finished

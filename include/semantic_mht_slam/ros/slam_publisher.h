@@ -25,7 +25,8 @@ class SlamPublisher {
  public:
   SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, const ClassTable& classes);
 
-  /// tf and pose of the newest odometry sample, with the correction that the policy allows.
+  /// tf and pose of the newest odometry sample, with the correction that the policy allows; the covariance holds what
+  /// the policy holds back.
   void publishPose(const Slam& slam, const LiveConfig& live);
 
   /// tf and pose of an odometry sample with the newest correction that was published: the estimator is not asked. Does
@@ -72,7 +73,7 @@ class SlamPublisher {
 
  private:
   void publishProvisional(const Slam& slam, const LiveConfig& live);
-  void sendPose(const StampedPose& T_map_base, const Pose& T_odom_base, const LiveConfig& live);
+  void sendPose(Stamp stamp, const Pose& T_odom_base, const LiveConfig& live);
 
   const NodeConfig config_;
   const ClassTable classes_;
@@ -89,6 +90,8 @@ class SlamPublisher {
   ros::Publisher map_publisher_;
   CorrectionFollower correction_;
   std::optional<Pose> T_map_odom_;  ///< of the newest pose
+  UncertainPose latest_;
+  OdometryModel odometry_model_;
   std::optional<Stamp> published_frame_;
   std::size_t published_submaps_ = 0;
   ClosureNews closures_;
