@@ -23,6 +23,25 @@ std::vector<SubmapResult> submapResults(const Map& map, const LoopCloser& closer
   return results;
 }
 
+/// Whether the frame came before the sample after number `i`.
+bool isDue(const DetectorFrame& frame, std::size_t i, const Recording& recording) {
+  if (frame.odometry_before) return *frame.odometry_before <= i + 1;
+  return frame.stamp <= recording.odometry[i].stamp;
+}
+
+/// Throws InputError with the causes if nothing of the recording could be used.
+void requireUsed(const Recording& recording, const RunResult& result, Method method) {
+  const InputCounters& counters = result.counters;
+  const bool has_objects =
+      counters.detections > 0 || (counters.detections_invalid == 0 && counters.detections_at_origin == 0 &&
+                                  recording.refused.unknown_classes.empty());
+  const bool is_mapped = method == Method::kOdometry || (counters.frames > 0 && has_objects);
+  if (!result.trajectory.empty() && is_mapped) return;
+  std::string problem = result.trajectory.empty() ? "no odometry sample could be used" : "no objects could be used";
+  for (const std::string& line : droppedInput(counters, recording.refused, recording.names)) problem += "; " + line;
+  throw InputError(problem);
+}
+
 }  // namespace
 
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
@@ -30,6 +49,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   RunResult result;
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
   const std::size_t known = trajectoryOf(slam).size();
+  const InputCounters counted = slam.parts().assembler.counters();
   const bool is_another_drive = start != nullptr && slam.parts().sessions.latestOdometry() &&
                                 !recording.odometry.empty() && !goesOn(slam, recording.odometry.front());
   if (is_another_drive) slam.beginSession();
@@ -39,7 +59,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
     const Stopwatch step_watch;
     const double mapping_before_s = slam.parts().mapping_s;
     const bool is_used = slam.addOdometry(recording.odometry[i]);
-    while (frame != recording.detector_frames.end() && frame->stamp <= recording.odometry[i].stamp) {
+    while (frame != recording.detector_frames.end() && isDue(*frame, i, recording)) {
       slam.addDetections(frame->stamp, frame->detections);
       ++frame;
     }
@@ -65,7 +85,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.sessions = slam.parts().sessions.summary(slam.map());
   result.detector_range_m = slam.parts().range_factor * Length::kReferenceRange_m;
   if (slam.parts().mapper) result.odometry_model = slam.parts().mapper->odometryModel();
-  result.counters = slam.parts().assembler.counters();
+  result.counters = slam.parts().assembler.counters() - counted;
   result.landmarks = landmarksOf(slam, uncertainty);
   result.loop_closures = loopClosures(slam.map());
   if (slam.parts().closer) result.submap_checks = submapResults(slam.map(), *slam.parts().closer);
@@ -73,7 +93,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.graph = slam.parts().graph.status();
   result.associations = slam.map().associations();
   result.submaps = slam.map().submaps().size();
-  if (result.trajectory.empty()) throw InputError("no odometry sample could be used");
+  requireUsed(recording, result, config.method);
   return result;
 }
 

@@ -3,7 +3,7 @@
 namespace semantic_mht_slam {
 
 std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
-                                      const InputNames& names, const std::string& base_frame) {
+                                      const InputNames& names) {
   std::vector<std::string> lines;
   const auto report = [&](std::size_t count, const std::string& name, const std::string& problem) {
     if (count > 0) lines.push_back(name + ": " + std::to_string(count) + " " + problem);
@@ -18,16 +18,21 @@ std::vector<std::string> droppedInput(const InputCounters& counters, const Refus
            "from " + refused.wrong_frames + ", other frames than node.odom_frame and node.base_frame");
   odometry(refused.odometry_bad_stamps, "the stamp is zero, or beyond the end of ROS's time");
   odometry(refused.odometry_stamp_outliers, "the stamp is far from those of the messages before and after");
+  odometry(refused.odometry_before_jump, "the clock falls back after them, and a new map begins");
   odometry(counters.odometry_invalid, "not finite, beyond 1e10 m, or a quaternion without unit norm");
   odometry(counters.odometry_not_rising, "the stamp does not rise");
+  objects(refused.objects_before_jump, "the clock falls back after them, and a new map begins");
   objects(refused.objects_bad_stamps, "the stamp is zero, or beyond the end of ROS's time");
   objects(refused.objects_without_transform,
-          "no transform from '" + refused.unconnected_frame + "' to '" + base_frame + "'");
+          "no transform from '" + refused.unconnected_frame + "' to '" + names.base_frame + "' at their stamp");
+  objects(refused.objects_in_map_frame,
+          "given in the frame of the map, which is what is sought; the sensor's is needed");
   for (const auto& [id, count] : refused.unknown_classes) {
     report(count, names.objects, "objects dropped: class id '" + std::to_string(id) + "' is not in the class table");
   }
   report(counters.detections_invalid, names.objects,
          "objects dropped: position, covariance, score or size is unusable");
+  report(counters.detections_at_origin, names.objects, "objects dropped: they lie at exactly 0, 0, 0");
   objects(counters.frames_before_odometry, "older than the odometry");
   objects(counters.frames_not_rising, "the stamp does not rise");
   objects(counters.frames_far_ahead, "the stamp is far ahead of the odometry");

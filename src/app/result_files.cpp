@@ -196,6 +196,20 @@ Json toJson(const InputCounters& counters) {
           {"frames_standing", counters.frames_standing}};
 }
 
+Json toJson(const RefusedInput& refused) {
+  std::size_t unknown_classes = 0;
+  for (const auto& [id, count] : refused.unknown_classes) unknown_classes += count;
+  return {{"odometry_wrong_frames", refused.odometry_wrong_frames},
+          {"odometry_bad_stamps", refused.odometry_bad_stamps},
+          {"odometry_stamp_outliers", refused.odometry_stamp_outliers},
+          {"odometry_before_jump", refused.odometry_before_jump},
+          {"frames_before_jump", refused.objects_before_jump},
+          {"frames_bad_stamps", refused.objects_bad_stamps},
+          {"frames_without_transform", refused.objects_without_transform},
+          {"frames_in_map_frame", refused.objects_in_map_frame},
+          {"detections_of_unknown_class", unknown_classes}};
+}
+
 Json toJson(const std::vector<SessionSummary>& sessions) {
   Json list = Json::array();
   for (const SessionSummary& session : sessions) {
@@ -255,11 +269,12 @@ void writeResultFiles(const std::string& folder, const Recording& recording, con
   writeFileAtomically(folder + "/config.yaml", toYaml(config));
 }
 
-void writeReport(const std::string& folder, const RunResult& result, const std::optional<TrajectoryError>& error,
-                 const SystemConfig& config, std::size_t map_bytes) {
+void writeReport(const std::string& folder, const Recording& recording, const RunResult& result,
+                 const std::optional<TrajectoryError>& error, const SystemConfig& config, std::size_t map_bytes) {
   Json report = {{"method", nameOf(config.slam.method)},
                  {"seed", config.slam.seed},
-                 {"frames", result.trajectory.size()},
+                 {"frames", result.counters.frames},
+                 {"odometry_samples", result.trajectory.size()},
                  {"seconds", result.seconds},
                  {"ms_per_frame", summarizeTimes(result.step_ms)},
                  {"mapping_ms_per_frame", summarizeTimes(result.mapping_ms)},
@@ -273,6 +288,8 @@ void writeReport(const std::string& folder, const RunResult& result, const std::
                  {"graph", {{"failures", result.graph.failures}, {"newest_failure", result.graph.newest_failure}}},
                  {"map_bytes", map_bytes},
                  {"input", toJson(result.counters)}};
+  report["input"].update(toJson(recording.refused));
+  report["input"]["dropped"] = droppedInput(result.counters, recording.refused, recording.names);
   report["sessions"] = toJson(result.sessions);
   report["detector_range_m"] = result.detector_range_m;
   if (result.odometry_model) report["odometry_model"] = toJson(*result.odometry_model);

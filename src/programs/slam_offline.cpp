@@ -28,7 +28,7 @@ namespace {
 constexpr const char* kUsage =
     "Runs the system on a data-set folder or a bag, as fast as it goes.\n"
     "  slam_offline --dataset DIR [--objects FILE] [--odometry FILE] --output DIR\n"
-    "  slam_offline --bag FILE --output DIR\n"
+    "  slam_offline --bag FILE [--odometry-topic TOPIC] [--objects-topic TOPIC] --output DIR\n"
     "  slam_offline --print-config [--config FILE] [--set KEY=VALUE ...]\n"
     "With --load MAP it goes on with the map of an earlier run (DIR/map.bag).\n";
 
@@ -38,6 +38,7 @@ struct Arguments {
   std::string map;
   std::string output;
   DatasetFiles dataset;
+  BagLayout topics;
   std::vector<std::string> settings;
   std::string method;
   std::string seed;
@@ -54,6 +55,10 @@ po::options_description makeOptions(Arguments& arguments) {
   add("odometry", po::value(&arguments.dataset.odometry)->value_name("FILE"),
       "odometry in KITTI format; default: odometry/vo_orb.txt");
   add("bag", po::value(&arguments.bag)->value_name("FILE"), "bag with objects and odometry, in place of --dataset");
+  add("odometry-topic", po::value(&arguments.topics.odometry_topic)->value_name("TOPIC"),
+      "odometry of the bag; default: /odometry");
+  add("objects-topic", po::value(&arguments.topics.objects_topic)->value_name("TOPIC"),
+      "objects of the bag; default: /objects");
   add("load", po::value(&arguments.map)->value_name("MAP"), "map file to go on with");
   add("method", po::value(&arguments.method)->value_name("NAME"), "the same as --set method=NAME");
   add("seed", po::value(&arguments.seed)->value_name("N"), "the same as --set seed=N");
@@ -86,7 +91,7 @@ SystemConfig loadConfig(const Arguments& arguments) {
 }
 
 Recording loadRecording(const Arguments& arguments, const ClassTable& classes, const SystemConfig& config) {
-  if (!arguments.bag.empty()) return readBag(arguments.bag, classes, config.node, BagLayout{});
+  if (!arguments.bag.empty()) return readBag(arguments.bag, classes, config.node, arguments.topics);
   return toRecording(readDataset(arguments.dataset, classes));
 }
 
@@ -101,23 +106,21 @@ std::string describeSessions(const std::vector<SessionSummary>& sessions) {
   return text;
 }
 
-void printSummary(const RunResult& result, const std::optional<TrajectoryError>& error, const std::string& output) {
-  std::printf("%zu frames in %.2f s", result.trajectory.size(), result.seconds);
+void printSummary(const Recording& recording, const RunResult& result, const std::optional<TrajectoryError>& error,
+                  const std::string& output) {
+  std::printf("%zu frames in %.2f s", result.counters.frames, result.seconds);
   if (error) {
     std::printf("; error: SE3-aligned %.3f m, running %.3f +- %.3f m", error->se3_m, error->running_mean_m,
                 error->running_std_m);
     if (std::isfinite(error->t_rel_percent)) std::printf(", t_rel %.3f %%", error->t_rel_percent);
   }
-  if (const std::size_t unusable = result.counters.detections_invalid) {
-    std::printf("; %zu detections dropped, their numbers cannot be used", unusable);
-  }
-  if (const std::size_t at_origin = result.counters.detections_at_origin) {
-    std::printf("; %zu detections dropped, they lie at exactly 0, 0, 0", at_origin);
-  }
   if (const std::size_t unknown = result.counters.covariances_unknown) {
     std::printf("; %zu covariances left out, they say that nothing is known", unknown);
   }
   std::printf("%s; results in %s\n", describeSessions(result.sessions).c_str(), output.c_str());
+  for (const std::string& line : droppedInput(result.counters, recording.refused, recording.names)) {
+    std::printf("  %s\n", line.c_str());
+  }
 }
 
 int run(int argc, char** argv) {
@@ -151,9 +154,9 @@ int run(int argc, char** argv) {
       writeMapFile(output.staging() + "/map.bag",
                    {result.state, result.landmarks, result.whole_trajectory, result.submaps}, config, classes);
   const std::optional<TrajectoryError> error = scoreRun(recording, result.trajectory);
-  writeReport(output.staging(), result, error, config, map_bytes);
+  writeReport(output.staging(), recording, result, error, config, map_bytes);
   output.commit();
-  printSummary(result, error, arguments.output);
+  printSummary(recording, result, error, arguments.output);
   return 0;
 }
 

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <filesystem>
-#include <map>
-#include <set>
+#include <limits>
+#include <utility>
 
+#include <console_bridge/console.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <std_msgs/Time.h>
@@ -12,24 +13,42 @@
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/objects_gate.h"
 
 namespace semantic_mht_slam {
 namespace {
 
-/// Reads the messages of a bag into a recording; each `add` takes one kind.
+/// tf2 prints every transform that it leaves out, of which a recording may be full.
+class QuietTf {
+ public:
+  QuietTf() : before_(console_bridge::getLogLevel()) {
+    console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  }
+  ~QuietTf() { console_bridge::setLogLevel(before_); }
+  QuietTf(const QuietTf&) = delete;
+  QuietTf& operator=(const QuietTf&) = delete;
+
+ private:
+  console_bridge::LogLevel before_;
+};
+
+/// Reads the messages of a bag into a recording, by the gates of the node.
 class BagReader {
  public:
   BagReader(const std::string& path, const ClassTable& classes, const NodeConfig& frames, const BagLayout& layout)
-      : path_(path), classes_(classes), frames_(frames), layout_(layout) {}
+      : path_(path),
+        frames_(frames),
+        layout_(layout),
+        odometry_gate_(frames),
+        sensors_(transforms_, frames),
+        objects_gate_(frames, classes, sensors_) {}
 
   Recording read() {
+    const QuietTf quiet;
     try {
       rosbag::Bag bag(path_, rosbag::bagmode::Read);
-      collect(bag, {"/tf_static"}, &BagReader::addStaticTransforms);
-      collect(bag, {layout_.time_origin_topic}, &BagReader::addTimeOrigin);
-      collect(bag, {layout_.ground_truth_topic}, &BagReader::addGroundTruth);
-      collect(bag, {layout_.odometry_topic}, &BagReader::addOdometry);
-      collect(bag, {layout_.objects_topic}, &BagReader::addObjects);
+      readBefore(bag);
+      readInput(bag);
     } catch (const rosbag::BagUnindexedException&) {
       throw InputError(path_ + ": the bag has no index: it is truncated or was not closed (rosbag reindex may help)");
     } catch (const rosbag::BagException& error) {
@@ -37,92 +56,138 @@ class BagReader {
     } catch (const ros::Exception& error) {
       throw InputError(path_ + ": broken message: " + error.what());
     }
-    require(!recording_.odometry.empty(), "no messages on " + layout_.odometry_topic);
-    require(!recording_.detector_frames.empty(), "no messages on " + layout_.objects_topic);
-    recording_.T_base_cam0 = findTransform(frames_.base_frame, layout_.camera_frame);
     return std::move(recording_);
   }
 
  private:
-  using Add = void (BagReader::*)(const rosbag::MessageInstance&);
+  /// What holds for the whole bag, wherever it stands.
+  void readBefore(const rosbag::Bag& bag) {
+    for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery("/tf_static"))) {
+      addTransforms(instance, true);
+    }
+    forEachOf<std_msgs::Time>(bag, layout_.time_origin_topic,
+                              [&](const std_msgs::Time& message) { time_origin_ = toStamp(message.data); });
+    forEachOf<nav_msgs::Path>(bag, layout_.ground_truth_topic, [&](const nav_msgs::Path& message) {
+      for (const auto& pose : message.poses) {
+        recording_.ground_truth.push_back({toStamp(pose.header.stamp) - time_origin_, fromMessage(pose.pose)});
+      }
+    });
+    if (transforms_.canTransform(frames_.base_frame, layout_.camera_frame, ros::Time(0))) {
+      const auto found = transforms_.lookupTransform(frames_.base_frame, layout_.camera_frame, ros::Time(0));
+      recording_.T_base_cam0 = fromMessage(found.transform);
+    }
+  }
 
-  void collect(const rosbag::Bag& bag, const std::vector<std::string>& topics, Add add) {
-    rosbag::View view(bag, rosbag::TopicQuery(topics));
-    for (const rosbag::MessageInstance& message : view) (this->*add)(message);
+  /// What the node would receive, in the order in which it was recorded.
+  void readInput(const rosbag::Bag& bag) {
+    recording_.names = {findTopic<nav_msgs::Odometry>(bag, layout_.odometry_topic),
+                        findTopic<SemanticObjectArray>(bag, layout_.objects_topic), frames_.base_frame};
+    const std::vector<std::string> topics{"/tf", recording_.names.odometry, recording_.names.objects};
+    for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topics))) {
+      now_s_ = instance.getTime().toSec();
+      if (instance.getTopic() == recording_.names.odometry) {
+        add(*instantiate<nav_msgs::Odometry>(instance));
+      } else if (instance.getTopic() == recording_.names.objects) {
+        objects_gate_.hold(*instantiate<SemanticObjectArray>(instance), odometry_gate_, now_s_, recording_.refused);
+        if (!odometry_gate_.isHolding()) takeObjects();
+      } else {
+        addTransforms(instance, false);
+      }
+    }
+    now_s_ = std::numeric_limits<double>::infinity();  // nothing more comes: what waits is decided now
+    takeObjects();
   }
 
   void require(bool condition, const std::string& problem) const {
     if (!condition) throw InputError(path_ + ": " + problem);
   }
 
+  /// The topic of that name, with or without slash.
+  template <class Message>
+  std::string findTopic(const rosbag::Bag& bag, const std::string& name) const {
+    std::string others;
+    for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
+      if (withoutSlash(connection->topic) == withoutSlash(name)) {
+        requireType<Message>(connection->topic, connection->datatype);
+        return connection->topic;
+      }
+      others += (others.empty() ? "" : ", ") + connection->topic + " (" + connection->datatype + ")";
+    }
+    throw InputError(path_ + ": no messages on " + name + "; the bag has " + (others.empty() ? "no topic" : others));
+  }
+
+  template <class Message>
+  void requireType(const std::string& topic, const std::string& type) const {
+    const std::string expected = ros::message_traits::datatype<Message>();
+    require(type == expected, "topic " + topic + " holds " + type + ", not " + expected);
+  }
+
   template <class Message>
   boost::shared_ptr<Message> instantiate(const rosbag::MessageInstance& instance) const {
     const auto message = instance.instantiate<Message>();
-    require(message != nullptr, "topic " + instance.getTopic() + " holds " + instance.getDataType() + ", not " +
-                                    ros::message_traits::datatype<Message>());
+    requireType<Message>(instance.getTopic(), instance.getDataType());
+    require(message != nullptr, "topic " + instance.getTopic() + " holds " + instance.getDataType() +
+                                    " of another version of this message");
     return message;
   }
 
-  void addStaticTransforms(const rosbag::MessageInstance& instance) {
-    const auto message = instantiate<tf2_msgs::TFMessage>(instance);
-    for (const auto& transform : message->transforms) {
-      static_transforms_[{transform.header.frame_id, transform.child_frame_id}] = fromMessage(transform.transform);
-      transforms_.setTransform(transform, "bag", true);
+  /// Messages of another type on the topic are somebody else's.
+  template <class Message, class Use>
+  void forEachOf(const rosbag::Bag& bag, const std::string& topic, const Use& use) const {
+    for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topic))) {
+      if (const auto message = instance.instantiate<Message>()) use(*message);
     }
   }
 
-  void addTimeOrigin(const rosbag::MessageInstance& instance) {
-    time_origin_ = toStamp(instantiate<std_msgs::Time>(instance)->data);
+  void addTransforms(const rosbag::MessageInstance& instance, bool is_static) {
+    const auto message = instance.instantiate<tf2_msgs::TFMessage>();
+    if (message == nullptr) return;
+    for (const auto& transform : message->transforms) transforms_.setTransform(transform, "bag", is_static);
   }
 
-  void addGroundTruth(const rosbag::MessageInstance& instance) {
-    const auto message = instantiate<nav_msgs::Path>(instance);
-    for (const auto& pose : message->poses) {
-      recording_.ground_truth.push_back({toStamp(pose.header.stamp) - time_origin_, fromMessage(pose.pose)});
+  void add(const nav_msgs::Odometry& message) {
+    if (!odometry_gate_.isUsable(message, recording_.refused)) return;
+    const std::vector<nav_msgs::Odometry> usable = odometry_gate_.pass(message, latest_, recording_.refused);
+    if (usable.empty()) return;
+    if (usable.size() > 1 && toStamp(usable.front().header.stamp) < *latest_) beginAgain();
+    for (const nav_msgs::Odometry& sample : usable) {
+      const StampedPose T_odom_base{toStamp(sample.header.stamp), fromMessage(sample.pose.pose)};
+      recording_.odometry.push_back({T_odom_base.stamp - time_origin_, T_odom_base.T_world_base});
+      sensors_.addOdometry(T_odom_base);
+      if (T_odom_base.T_world_base.isValid()) latest_ = std::max(latest_.value_or(0), T_odom_base.stamp);
     }
+    takeObjects();
   }
 
-  void addOdometry(const rosbag::MessageInstance& instance) {
-    const auto message = instantiate<nav_msgs::Odometry>(instance);
-    require(message->header.frame_id == frames_.odom_frame && message->child_frame_id == frames_.base_frame,
-            "topic " + layout_.odometry_topic + " is from '" + message->header.frame_id + "' to '" +
-                message->child_frame_id + "', configured is '" + frames_.odom_frame + "' to '" + frames_.base_frame +
-                "' (node.odom_frame, node.base_frame)");
-    recording_.odometry.push_back({toStamp(message->header.stamp) - time_origin_, fromMessage(message->pose.pose)});
+  /// The clock falls back: the node begins a new map.
+  void beginAgain() {
+    recording_.refused.odometry_before_jump += recording_.odometry.size();
+    recording_.refused.objects_before_jump += recording_.detector_frames.size();
+    recording_.odometry.clear();
+    recording_.detector_frames.clear();
+    sensors_.forgetOdometry();
+    latest_.reset();
   }
 
-  void addObjects(const rosbag::MessageInstance& instance) {
-    const auto message = instantiate<SemanticObjectArray>(instance);
-    const std::optional<Pose> T_base_sensor = findTransform(frames_.base_frame, message->header.frame_id);
-    require(T_base_sensor.has_value(), "topic " + layout_.objects_topic + ": frame '" + message->header.frame_id +
-                                           "' is not connected to '" + frames_.base_frame + "' by /tf_static");
-    for (const SemanticObject& object : message->objects) {
-      require(classes_.findId(object.class_id).has_value(),
-              "topic " + layout_.objects_topic + ": class id " + std::to_string(object.class_id) +
-                  " is not in the class table (" + classes_.names() + ")");
+  void takeObjects() {
+    while (auto frame = objects_gate_.next(odometry_gate_, latest_, now_s_, recording_.refused)) {
+      frame->stamp -= time_origin_;
+      frame->odometry_before = recording_.odometry.size();
+      recording_.detector_frames.push_back(std::move(*frame));
     }
-    std::size_t unknown_classes = 0;
-    recording_.detector_frames.push_back({toStamp(message->header.stamp) - time_origin_,
-                                          fromMessage(*message, classes_, *T_base_sensor, unknown_classes)});
-  }
-
-  /// T_target_source. A transform that stands in the bag as such is taken to the last bit.
-  std::optional<Pose> findTransform(const std::string& target, const std::string& source) const {
-    if (target == source) return Pose::identity();
-    const auto direct = static_transforms_.find({target, source});
-    if (direct != static_transforms_.end()) return direct->second;
-    if (!transforms_.canTransform(target, source, ros::Time(0))) return std::nullopt;
-    return fromMessage(transforms_.lookupTransform(target, source, ros::Time(0)).transform);
   }
 
   const std::string& path_;
-  const ClassTable& classes_;
   const NodeConfig& frames_;
   const BagLayout& layout_;
   Recording recording_;
   Stamp time_origin_ = 0;
-  std::map<std::pair<std::string, std::string>, Pose> static_transforms_;
+  double now_s_ = 0.0;
+  std::optional<Stamp> latest_;  ///< odometry in use
   tf2::BufferCore transforms_;
+  OdometryGate odometry_gate_;
+  SensorTransforms sensors_;
+  ObjectsGate objects_gate_;
 };
 
 }  // namespace

@@ -159,6 +159,9 @@ void findObjectsFault(const NodeStatus& now, const NodeStatus& before, Finding& 
                 "no transform from '" + estimator.refused.unconnected_frame + "' to '" + now.base_frame + "'",
                 "publish where the sensor is: rosrun tf2_ros static_transform_publisher X Y Z YAW PITCH ROLL " +
                     now.base_frame + " " + estimator.refused.unconnected_frame);
+  finding.error(estimator.refused.objects_in_map_frame > before.estimator.refused.objects_in_map_frame,
+                objects.topic + " is in the frame of the map, or in one that hangs on it: dropped",
+                "give objects in the frame of their sensor, of the robot, or of the odometry");
   finding.error(
       counters.frames_far_ahead > old.frames_far_ahead || counters.frames_before_odometry > old.frames_before_odometry,
       objects.topic + " is stamped " + apart(objects) + " the odometry: dropped",
@@ -194,6 +197,7 @@ void diagnoseObjects(const NodeStatus& now, const NodeStatus& before, Diagnostic
   status.add("objects used", counters.detections);
   status.add("dropped, bad stamp", now.estimator.refused.objects_bad_stamps);
   status.add("dropped, no transform", now.estimator.refused.objects_without_transform);
+  status.add("dropped, in the map frame", now.estimator.refused.objects_in_map_frame);
   status.add("dropped, before the odometry", counters.frames_before_odometry);
   status.add("dropped, far ahead of the odometry", counters.frames_far_ahead);
   status.add("dropped, stamp does not rise", counters.frames_not_rising);

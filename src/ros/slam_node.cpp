@@ -25,10 +25,11 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       config_(config),
       classes_(classes),
       live_(ros::NodeHandle(private_handle, "node/live")),
-      sensors_(config.node.base_frame),
       slam_(std::move(slam)),
       publisher_(handle, config.node, classes),
       gate_(config.node),
+      sensors_(transforms_, config.node),
+      objects_gate_(config.node, classes_, sensors_),
       is_localization_wanted_(config.node.mode == StartMode::kLocalization),
       is_loaded_(!config.node.map.empty()),
       queue_(static_cast<std::size_t>(config.node.queue_size)) {
@@ -136,11 +137,8 @@ void SlamNode::warnOfDrops() {
   if (from_queue > 0) {
     warnings_.warn(std::to_string(from_queue) + " messages dropped, the estimator is too slow (node/queue_size)");
   }
-  const InputNames names{odometry_subscriber_.getTopic(), objects_subscriber_.getTopic()};
-  for (const std::string& line :
-       droppedInput(estimator_.counters, estimator_.refused, names, config_.node.base_frame)) {
-    warnings_.warn(line);
-  }
+  const InputNames names{odometry_subscriber_.getTopic(), objects_subscriber_.getTopic(), config_.node.base_frame};
+  for (const std::string& line : droppedInput(estimator_.counters, estimator_.refused, names)) warnings_.warn(line);
   for (const FailureStatus& failures : {input_failures_.status(), other_failures_.status()}) {
     if (failures.count > 0)
       warnings_.warn("unexpected failures: " + std::to_string(failures.count) + "; the newest: " + failures.newest);
@@ -157,6 +155,7 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
     const bool keeps_map = isLocalizing(slam_->mode());
     ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latest), message.header.stamp.toSec(),
              keeps_map ? "looking for the place in the map" : "starting a new map");
+    sensors_.forgetOdometry();
     keeps_map ? slam_->beginSession() : startAgain();
   }
   for (const nav_msgs::Odometry& sample : usable) process(sample);
@@ -171,7 +170,9 @@ void SlamNode::beginSessionUnlessGoingOn(const nav_msgs::Odometry& message) {
 }
 
 void SlamNode::process(const nav_msgs::Odometry& message) {
-  if (!slam_->addOdometry({toStamp(message.header.stamp), fromMessage(message.pose.pose)})) return;
+  const StampedPose T_odom_base{toStamp(message.header.stamp), fromMessage(message.pose.pose)};
+  if (!slam_->addOdometry(T_odom_base)) return;
+  sensors_.addOdometry(T_odom_base);
   const LiveConfig live = live_.get();
   if (isLocated(slam_->mode())) publisher_.publishPose(*slam_, live);
   publisher_.publishFrame(*slam_, live);
@@ -192,50 +193,19 @@ void SlamNode::startAgain() {
 }
 
 void SlamNode::handle(const SemanticObjectArray& message) {
-  if (!isUsableStamp(message.header.stamp)) {
-    ++estimator_.refused.objects_bad_stamps;
-    return;
-  }
   if (is_paused_) {
     ++estimator_.objects_while_paused;
     return;
   }
-  const Stamp stamp = toStamp(message.header.stamp);
-  const bool falls_back = gate_.isBack(stamp, last_objects_);
-  last_objects_ = stamp;
-  waiting_objects_.push_back(
-      {message, falls_back, ros::WallTime::now() + ros::WallDuration(config_.node.tf_timeout_s)});
+  objects_gate_.hold(message, gate_, wallSeconds(), estimator_.refused);
   if (!gate_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
 }
 
 void SlamNode::retryObjects() {
-  // Objects wait, in their order, for the transform of their sensor, and where they overtook a jump back in time, for
-  // the odometry that tells of it. Nothing waits for them. A detector that is merely late does not wait: its stamps
-  // rise.
-  while (!waiting_objects_.empty()) {
-    const WaitingObjects& next = waiting_objects_.front();
-    const std::optional<Pose> T_base_sensor = sensors_.find(next.message.header.frame_id);
-    const bool may_wait = ros::WallTime::now() < next.deadline;
-    const bool overtook_jump = next.falls_back && gate_.isBack(toStamp(next.message.header.stamp), latestStamp());
-    if (may_wait && (!T_base_sensor || overtook_jump)) return;
-    const SemanticObjectArray message = std::move(waiting_objects_.front().message);
-    waiting_objects_.pop_front();  // before anything can fail: a message is tried once
-    if (T_base_sensor) {
-      add(message, *T_base_sensor);
-    } else {
-      ++estimator_.refused.objects_without_transform;
-      estimator_.refused.unconnected_frame = message.header.frame_id;
-    }
+  while (auto frame = objects_gate_.next(gate_, latestStamp(), wallSeconds(), estimator_.refused)) {
+    slam_->addDetections(frame->stamp, std::move(frame->detections));
+    publisher_.publishFrame(*slam_, live_.get());
   }
-}
-
-void SlamNode::add(const SemanticObjectArray& message, const Pose& T_base_sensor) {
-  for (const SemanticObject& object : message.objects) {
-    if (!classes_.findId(object.class_id)) ++estimator_.refused.unknown_classes[object.class_id];
-  }
-  std::size_t unknown_classes = 0;
-  slam_->addDetections(toStamp(message.header.stamp), fromMessage(message, classes_, T_base_sensor, unknown_classes));
-  publisher_.publishFrame(*slam_, live_.get());
 }
 
 void SlamNode::noteStatus() {

@@ -66,7 +66,7 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   return answer("reset", response, [&] {
     const auto lock = lockCaughtUp();
     const std::size_t landmarks = publisher_.landmarks();
-    waiting_objects_.clear();
+    objects_gate_.clear();
     startAgain();
     noteStatus();
     response.success = true;
@@ -149,7 +149,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
       return;
     }
     is_loaded_ = true;
-    waiting_objects_.clear();
+    objects_gate_.clear();
     published_odometry_ = 0;
     input_failures_.forgetRow();
     noteStatus();

@@ -7,7 +7,8 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kFurthest_m = 1e10;  // where a double still tells micrometres
+constexpr double kFurthest_m = 1e10;     // where a double still tells micrometres
+constexpr Stamp kDisorder = 1000000000;  // frames of one detector do not come in disorder by more
 
 bool isUsable(const Pose& T_odom_base) {
   return T_odom_base.isValid() && (T_odom_base.translation_m.cwiseAbs().array() <= kFurthest_m).all();
@@ -22,6 +23,18 @@ void describe(FrameAssemblerConfig& config, Fields& fields) {
              "How long odometry is kept for detections that come late.");
   fields.add("max_waiting_frames", config.max_waiting_frames, "", {1, 1000000},
              "Detector frames that may wait for odometry; beyond that the oldest is dropped.");
+}
+
+InputCounters operator-(InputCounters counters, const InputCounters& before) {
+  for (const auto member :
+       {&InputCounters::odometry, &InputCounters::odometry_invalid, &InputCounters::odometry_not_rising,
+        &InputCounters::frames, &InputCounters::frames_before_odometry, &InputCounters::frames_not_rising,
+        &InputCounters::frames_far_ahead, &InputCounters::frames_in_odometry_gap,
+        &InputCounters::frames_waiting_too_long, &InputCounters::detections, &InputCounters::detections_invalid,
+        &InputCounters::detections_at_origin, &InputCounters::covariances_unknown, &InputCounters::frames_standing}) {
+    counters.*member -= before.*member;
+  }
+  return counters;
 }
 
 FrameAssembler::FrameAssembler(const FrameAssemblerConfig& config) : config_(config) {}
@@ -44,7 +57,7 @@ bool FrameAssembler::addOdometry(const StampedPose& T_odom_base) {
 void FrameAssembler::beginSession() {
   odometry_.clear();
   waiting_.clear();
-  last_frame_.reset();
+  last_taken_.reset();
 }
 
 void FrameAssembler::forgetOldOdometry() {
@@ -56,7 +69,8 @@ void FrameAssembler::forgetOldOdometry() {
 
 void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
   const std::size_t index = next_index_++;
-  if (last_frame_ && stamp <= *last_frame_) {
+  dropOutlierBefore(stamp);
+  if (newest() && stamp <= *newest()) {
     ++counters_.frames_not_rising;
     return;
   }
@@ -64,22 +78,32 @@ void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
     ++counters_.frames_far_ahead;  // and must not make the frames that follow look late
     return;
   }
-  last_frame_ = stamp;
   counters_.covariances_unknown += forgetUnknownCovariances(detections);
   counters_.detections_at_origin += removeAtOrigin(detections);
   counters_.detections_invalid += removeUnusable(detections);
   waiting_.push_back({index, stamp, std::move(detections)});
   const std::size_t most = config_.max_waiting_frames;
   if (waiting_.size() > most) {
+    last_taken_ = waiting_.front().stamp;
     waiting_.pop_front();
     ++counters_.frames_waiting_too_long;
   }
+}
+
+/// One frame stamped far ahead of those before and after it costs itself alone, if it still waits.
+void FrameAssembler::dropOutlierBefore(Stamp stamp) {
+  if (waiting_.empty() || stamp > waiting_.back().stamp - kDisorder) return;
+  const std::optional<Stamp> before = waiting_.size() > 1 ? waiting_[waiting_.size() - 2].stamp : last_taken_;
+  if (before && stamp <= *before) return;
+  waiting_.pop_back();
+  ++counters_.frames_not_rising;
 }
 
 std::optional<Frame> FrameAssembler::next() {
   while (!waiting_.empty() && !odometry_.empty() && waiting_.front().stamp <= odometry_.back().stamp) {
     WaitingFrame waiting = std::move(waiting_.front());
     waiting_.pop_front();
+    last_taken_ = waiting.stamp;
     if (const auto T_odom_base = interpolatedOdometry(waiting.stamp)) {
       ++counters_.frames;
       counters_.detections += waiting.detections.size();

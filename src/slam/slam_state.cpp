@@ -30,7 +30,7 @@ void FrameAssembler::WaitingFrame::transfer(StateArchive& archive) {
 }
 
 void FrameAssembler::transfer(StateArchive& archive) {
-  archive(odometry_, waiting_, next_index_, last_frame_, counters_);
+  archive(odometry_, waiting_, next_index_, last_taken_, counters_);
 }
 
 namespace {

@@ -154,6 +154,20 @@ TEST(FrameAssemblerTest, OneFrameFarAheadDoesNotMakeTheOthersLate) {
   EXPECT_EQ(assembler.counters().frames_far_ahead, 1U);
 }
 
+TEST(FrameAssemblerTest, OneFrameAheadOfTheOthersCostsItselfAlone) {
+  for (const double ahead_s : {5.0, 3600.0}) {
+    for (const bool is_before_odometry : {true, false}) {
+      FrameAssembler assembler({});
+      if (!is_before_odometry) assembler.addOdometry(odometryAt(0.9));
+      assembler.addDetections(stampFromSeconds(1.0 + ahead_s), {});
+      for (int i = 1; i <= 10; ++i) assembler.addDetections(stampFromSeconds(1.0 + 0.1 * i), {});
+      for (int i = is_before_odometry ? 0 : 1; i <= 20; ++i) assembler.addOdometry(odometryAt(0.9 + 0.1 * i));
+      EXPECT_EQ(takeAll(assembler).size(), 10U) << ahead_s << (is_before_odometry ? " before" : " after");
+      EXPECT_EQ(assembler.counters().frames_not_rising + assembler.counters().frames_far_ahead, 1U);
+    }
+  }
+}
+
 TEST(FrameAssemblerTest, FramesThatWaitForeverAreBounded) {
   FrameAssemblerConfig config;
   config.max_waiting_frames = 10;

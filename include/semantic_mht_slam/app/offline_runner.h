@@ -28,7 +28,7 @@ struct RunResult {
   std::vector<FixedAxesCov> trajectory_cov;    ///< of each pose of `trajectory`
   std::vector<FixedAxesCov> online_trajectory_cov;  ///< the same as it was known live
   std::vector<LoopClosureResult> loop_closures;
-  InputCounters counters;
+  InputCounters counters;  ///< of the recording alone
   GraphStatus graph;
   std::vector<IdentityEvent> identity;             ///< mergers of landmarks, and what was taken back
   std::vector<MixtureLandmark> landmarks;          ///< map frame, by rising id
@@ -49,9 +49,10 @@ struct RunResult {
 /// Called now and then with the number of odometry samples done and of all.
 using ProgressCallback = std::function<void(std::size_t, std::size_t)>;
 
-/// Feeds a recording to the estimator in the order of stamps, as fast as it goes.
+/// Feeds a recording to the estimator in the order in which it came, as fast as it goes.
 /// With `start`, goes on from that state (as another session if the odometry does not go on); frames are counted on,
-/// too. Throws InputError if nothing of the odometry could be used, or if the state does not fit.
+/// too. Throws InputError with the causes if nothing of the odometry or of the objects could be used, or if the state
+/// does not fit.
 RunResult runOffline(const Recording& recording, const SlamConfig& config, const ClassTable& classes,
                      const ProgressCallback& progress, const SlamState* start = nullptr);
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "semantic_mht_slam/app/refused_input.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
 #include "semantic_mht_slam/io/dataset.h"
 #include "semantic_mht_slam/models/detection.h"
@@ -14,14 +15,18 @@ namespace semantic_mht_slam {
 struct DetectorFrame {
   Stamp stamp = 0;
   Detections detections;
+  std::optional<std::size_t> odometry_before = {};  ///< samples that came before it; unknown: those stamped before it
 };
 
-/// A drive as it was recorded, from a data-set folder or from a bag.
+/// A drive as it was recorded, from a data-set folder or from a bag: what may go to the estimator, in the order in
+/// which it came.
 struct Recording {
   std::vector<StampedPose> odometry;  ///< T_odom_base
   std::vector<DetectorFrame> detector_frames;
   std::optional<Pose> T_base_cam0;        ///< for output in the KITTI format; unknown: the base frame is used
   std::vector<StampedPose> ground_truth;  ///< T_map_base; empty if unknown
+  RefusedInput refused;                   ///< what was left out when it was read
+  InputNames names;
 };
 
 Recording toRecording(Dataset dataset);

@@ -17,18 +17,22 @@ struct RefusedInput {
   std::size_t odometry_stamp_outliers = 0;  ///< one message stamped far from those before and after it
   std::size_t objects_bad_stamps = 0;
   std::size_t objects_without_transform = 0;
-  std::string unconnected_frame;               ///< the newest one
+  std::string unconnected_frame;         ///< the newest one
+  std::size_t objects_in_map_frame = 0;  ///< in the frame of the map, or in one that hangs on it
+  std::size_t odometry_before_jump = 0;  ///< of a bag: time fell back after it, and another map began
+  std::size_t objects_before_jump = 0;
   std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
 };
 
-/// Names of the two inputs in messages to the user: topics, or files.
+/// Names of the input in messages to the user: topics or files, and the robot's frame.
 struct InputNames {
   std::string odometry = "odometry";
   std::string objects = "objects";
+  std::string base_frame = "base_link";
 };
 
 /// What was dropped of the two inputs so far, a line for each cause: the input, how many, and why.
 std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
-                                      const InputNames& names, const std::string& base_frame);
+                                      const InputNames& names);
 
 }  // namespace semantic_mht_slam

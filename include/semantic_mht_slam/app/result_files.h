@@ -20,9 +20,10 @@ std::optional<TrajectoryError> scoreRun(const Recording& recording, const std::v
 void writeResultFiles(const std::string& folder, const Recording& recording, const RunResult& result,
                       const SystemConfig& config, const ClassTable& classes);
 
-/// Writes report.json; `map_bytes` is the size of the map file, `error` that of `scoreRun`. Only `seconds`,
-/// `ms_per_frame`, `mapping_ms_per_frame` and `peak_rss_mb` differ between two runs with the same input.
-void writeReport(const std::string& folder, const RunResult& result, const std::optional<TrajectoryError>& error,
-                 const SystemConfig& config, std::size_t map_bytes);
+/// Writes report.json, with what was dropped of the input by cause; `map_bytes` is the size of the map file, `error`
+/// that of `scoreRun`. Only `seconds`, `ms_per_frame`, `mapping_ms_per_frame` and `peak_rss_mb` differ between two runs
+/// with the same input.
+void writeReport(const std::string& folder, const Recording& recording, const RunResult& result,
+                 const std::optional<TrajectoryError>& error, const SystemConfig& config, std::size_t map_bytes);
 
 }  // namespace semantic_mht_slam

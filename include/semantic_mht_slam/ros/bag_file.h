@@ -24,10 +24,10 @@ struct BagLayout {
 void writeBag(const std::string& path, const Recording& recording, const ClassTable& classes, const NodeConfig& frames,
               const BagLayout& layout, Stamp time_origin);
 
-/// Reads a bag as a recording; stamps are shifted back by the stored time origin, if any. Objects in another frame than
-/// the base frame are transformed by the static transforms of the bag.
-/// Throws InputError for a missing, truncated or foreign file, missing topics, wrong message types, frames that are not
-/// connected, odometry in other frames than configured and class ids that the table lacks.
+/// Reads a bag as a recording, as the node would receive it: by the same gates, in the order in which it was recorded.
+/// What they refuse is counted in the recording. Stamps are shifted back by the stored time origin, if any.
+/// Throws InputError for a missing, truncated or foreign file, missing topics (the others are named) and wrong message
+/// types.
 Recording readBag(const std::string& path, const ClassTable& classes, const NodeConfig& frames,
                   const BagLayout& layout);
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +10,8 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/transform_listener.h>
 
 #include <semantic_mht_slam/GetLandmarks.h>
 #include <semantic_mht_slam/LoadMap.h>
@@ -23,6 +24,7 @@
 #include "semantic_mht_slam/ros/input_queue.h"
 #include "semantic_mht_slam/ros/live_parameters.h"
 #include "semantic_mht_slam/ros/node_diagnostics.h"
+#include "semantic_mht_slam/ros/objects_gate.h"
 #include "semantic_mht_slam/ros/odometry_gate.h"
 #include "semantic_mht_slam/ros/sensor_transforms.h"
 #include "semantic_mht_slam/ros/slam_publisher.h"
@@ -51,13 +53,6 @@ class SlamNode {
   SlamNode& operator=(const SlamNode&) = delete;
 
  private:
-  /// Objects whose sensor is not known to tf yet, or that may belong to odometry that has not come yet.
-  struct WaitingObjects {
-    SemanticObjectArray message;
-    bool falls_back = false;  ///< behind the objects before
-    ros::WallTime deadline;
-  };
-
   void receive(const nav_msgs::OdometryConstPtr& message);
   void receive(const SemanticObjectArrayConstPtr& message);
   void subscribe();
@@ -75,7 +70,6 @@ class SlamNode {
   void beginSessionUnlessGoingOn(const nav_msgs::Odometry& message);
   std::optional<Stamp> latestStamp() const;
   void retryObjects();
-  void add(const SemanticObjectArray& message, const Pose& T_base_sensor);
   void noteStatus();
 
   // With the estimator locked.
@@ -106,18 +100,19 @@ class SlamNode {
   const SystemConfig config_;
   const ClassTable classes_;
   LiveParameters live_;
-  SensorTransforms sensors_;
+  tf2_ros::Buffer transforms_;
+  tf2_ros::TransformListener transform_listener_{transforms_};
 
   // Guarded by `slam_mutex_`.
   TicketMutex slam_mutex_;
   std::unique_ptr<Slam> slam_;
   SlamPublisher publisher_;
   OdometryGate gate_;
+  SensorTransforms sensors_;
+  ObjectsGate objects_gate_;
   bool is_localization_wanted_;
   bool is_paused_ = false;  ///< objects are dropped as they come
   bool is_loaded_;          ///< the map is from a file, and no odometry has come since
-  std::deque<WaitingObjects> waiting_objects_;
-  std::optional<Stamp> last_objects_;  ///< the newest to arrive
   EstimatorStatus estimator_;
 
   // Guarded by `status_mutex_`, which is never held for long: diagnostics go out however busy the estimator is.

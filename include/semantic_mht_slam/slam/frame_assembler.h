@@ -28,7 +28,7 @@ struct InputCounters {
   std::size_t odometry_not_rising = 0;      ///< dropped: stamp not after the one before
   std::size_t frames = 0;                   ///< detector frames used
   std::size_t frames_before_odometry = 0;   ///< dropped: older than the odometry that is still known
-  std::size_t frames_not_rising = 0;        ///< dropped: stamp not after the frame before
+  std::size_t frames_not_rising = 0;        ///< dropped: stamp not after the frame before, or far ahead of the next one
   std::size_t frames_far_ahead = 0;         ///< dropped: ahead of the odometry by more than its history is long
   std::size_t frames_in_odometry_gap = 0;   ///< dropped: odometry around the stamp is too far apart
   std::size_t frames_waiting_too_long = 0;  ///< dropped: too many frames wait for odometry
@@ -38,6 +38,9 @@ struct InputCounters {
   std::size_t covariances_unknown = 0;      ///< left out, the learned noise is used: negative, zero or beyond the range
   std::size_t frames_standing = 0;          ///< not looked at: from where the vehicle has stood for long
 };
+
+/// What was counted since `before`.
+InputCounters operator-(InputCounters counters, const InputCounters& before);
 
 /// Joins odometry and detections by their stamps: a frame gets the odometry pose interpolated to its stamp, as soon as
 /// odometry at or after that stamp is there. The result depends on stamps alone, not on the order in which the two
@@ -77,12 +80,16 @@ class FrameAssembler {
 
   std::optional<Pose> interpolatedOdometry(Stamp stamp);
   void forgetOldOdometry();
+  void dropOutlierBefore(Stamp stamp);
+
+  /// Stamp of the newest frame, or empty.
+  std::optional<Stamp> newest() const { return waiting_.empty() ? last_taken_ : waiting_.back().stamp; }
 
   FrameAssemblerConfig config_;
   std::deque<StampedPose> odometry_;
   std::deque<WaitingFrame> waiting_;
   std::size_t next_index_ = 0;
-  std::optional<Stamp> last_frame_;
+  std::optional<Stamp> last_taken_;  ///< stamp of the newest frame that no longer waits
   InputCounters counters_;
 };
 
