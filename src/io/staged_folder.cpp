@@ -41,9 +41,7 @@ void StagedFolder::commit() {
   const std::vector<fs::path> files = filesBelow(staging_);
   for (const fs::path& file : files) {
     const fs::path target = fs::path(path_) / file;
-    if (fs::exists(target) && !fs::is_regular_file(target)) {
-      throw InputError("cannot write '" + target.string() + "': something else than a file is there");
-    }
+    requireReplaceable(target.string());
   }
   for (const fs::path& file : files) {
     const fs::path target = fs::path(path_) / file;

@@ -11,6 +11,7 @@
 #include <semantic_mht_slam/MapSection.h>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/output_file.h"
 #include "semantic_mht_slam/ros/atomic_bag.h"
 #include "semantic_mht_slam/ros/conversions.h"
 
@@ -166,6 +167,18 @@ class MapReader {
   const KeepReading& keep_reading_;
 };
 
+/// What is no map file is somebody's, and is not replaced by one. An empty file holds nothing.
+void requireMapOrNothing(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
+  try {
+    rosbag::Bag bag(path, rosbag::bagmode::Read);
+    if (rosbag::View(bag, rosbag::TopicQuery(kHeaderTopic)).size() > 0) return;
+  } catch (const rosbag::BagException&) {
+  }
+  throw InputError("cannot write '" + absolutePath(path) + "': a file that is no map is there, and stays");
+}
+
 }  // namespace
 
 SavedMap mapOf(const Slam& slam, const std::function<void()>& on_copied) {
@@ -181,7 +194,8 @@ std::size_t writeMapFile(const std::string& path, const SavedMap& map, const Sys
   const Stamp last = map.trajectory.empty() ? 0 : map.trajectory.back().stamp;
   const Stamp stamp = std::max<Stamp>(1, last);  // ROS time cannot be 0
   const SemanticMap message = toMessage(stamp, config.node.map_frame, classes, map.landmarks, map.submaps);
-  writeBagAtomically(path, [&](rosbag::Bag& bag) {
+  requireMapOrNothing(path);
+  return writeBagAtomically(path, [&](rosbag::Bag& bag) {
     bag.setCompression(rosbag::compression::BZ2);
     const ros::Time time = toRosTime(stamp);
     bag.write(kHeaderTopic, time, makeHeader(map, message, config));
@@ -191,7 +205,6 @@ std::size_t writeMapFile(const std::string& path, const SavedMap& map, const Sys
     bag.write(kMapTopic, time, message);
     bag.write(kTrajectoryTopic, time, toPath(map.trajectory, config.node.map_frame));
   });
-  return static_cast<std::size_t>(std::filesystem::file_size(path));
 }
 
 LoadedMap readMapFile(const std::string& path, const SystemConfig& config, const ClassTable& classes,

@@ -7,6 +7,7 @@
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/landmark_choice.h"
 #include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/ros/map_path.h"
 #include "semantic_mht_slam/ros/slam_node.h"
 
 // What other nodes ask of the node: its services, and the status behind its diagnostics.
@@ -111,17 +112,17 @@ bool SlamNode::getLandmarks(GetLandmarks::Request& request, GetLandmarks::Respon
 
 bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
   return answer("save_map", response, [&] {
-    auto lock = lockCaughtUp();
-    const SavedMap map = mapOf(*slam_, [&] { lock.unlock(); });
     try {
-      response.bytes = writeMapFile(request.path, map, config_, classes_);
+      const std::string path = mapPath(request.path, config_.node.map_folder);
+      auto lock = lockCaughtUp();
+      const SavedMap map = mapOf(*slam_, [&] { lock.unlock(); });
+      response.bytes = writeMapFile(path, map, config_, classes_);
+      response.success = true;
+      response.message = std::to_string(map.landmarks.size()) + " landmarks of " + std::to_string(map.submaps) +
+                         " finished submaps, and the open one, are in '" + path + "'";
     } catch (const InputError& error) {
       response.message = error.what();
-      return;
     }
-    response.success = true;
-    response.message = std::to_string(map.landmarks.size()) + " landmarks of " + std::to_string(map.submaps) +
-                       " finished submaps, and the open one, are in '" + request.path + "'";
   });
 }
 
@@ -130,7 +131,8 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
     std::unique_ptr<Slam> other;  // the loaded one, and then the one before
     bool has_same_parameters = true;
     try {
-      const LoadedMap map = readMapFile(request.path, config_, classes_, ros::ok);
+      const std::string path = mapPath(request.path, config_.node.map_folder);
+      const LoadedMap map = readMapFile(path, config_, classes_, ros::ok);
       has_same_parameters = map.has_same_parameters;
       other = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
     } catch (const InputError& error) {

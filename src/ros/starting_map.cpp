@@ -6,6 +6,7 @@
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/ros/map_path.h"
 
 namespace semantic_mht_slam {
 
@@ -16,13 +17,13 @@ std::unique_ptr<Slam> startingSlam(const SystemConfig& config, const ClassTable&
     if (localizes) throw InputError("node/mode is localization, and node/map names no map file to localize in");
     return std::make_unique<Slam>(config.slam, classes);
   }
-  if (!std::filesystem::path(node.map).is_absolute()) {
+  if (node.map.front() != '~' && node.map_folder.empty() && !std::filesystem::path(node.map).is_absolute()) {
     throw InputError("node/map: '" + node.map + "' is no absolute path (nodes do not run where roslaunch was called)");
   }
-  auto slam =
-      std::make_unique<Slam>(config.slam, classes, readMapFile(node.map, config, classes, ros::ok).state, ros::ok);
+  const std::string path = mapPath(node.map, node.map_folder);
+  auto slam = std::make_unique<Slam>(config.slam, classes, readMapFile(path, config, classes, ros::ok).state, ros::ok);
   if (localizes && slam->map().submaps().empty()) {
-    throw InputError("node/map: '" + node.map + "' has no finished submap to localize in");
+    throw InputError("node/map: '" + path + "' has no finished submap to localize in");
   }
   if (localizes) slam->localize();
   return slam;

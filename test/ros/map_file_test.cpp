@@ -184,6 +184,24 @@ TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
   EXPECT_GT(refused, 100);
 }
 
+TEST_F(MapFileTest, OnlyMapsAreReplaced) {
+  const std::string other = folder_ / "other.bag";
+  writeFileAtomically(other, "somebody's text");
+  expectInputError([&] { writeMapFile(other, map_, config_, classes_); }, {other, "no map is there, and stays"});
+  EXPECT_EQ(readFile(other), "somebody's text");
+  std::filesystem::remove(other);
+  {
+    rosbag::Bag bag(other, rosbag::bagmode::Write);
+    bag.write("/time_origin", ros::Time(1.0), std_msgs::Time());
+  }
+  expectInputError([&] { writeMapFile(other, map_, config_, classes_); }, {other, "no map is there, and stays"});
+  writeFileAtomically(other, "");
+  for (const std::string& path : {other, path_}) {
+    const std::size_t bytes = writeMapFile(path, map_, config_, classes_);
+    EXPECT_EQ(bytes, std::filesystem::file_size(path)) << path;
+  }
+}
+
 TEST_F(MapFileTest, FailedWritesLeaveTheOldFileAlone) {
   const std::string content = readFile(path_);
   expectInputError([&] { writeMapFile(folder_.path(), map_, config_, classes_); }, {"cannot write"});

@@ -113,10 +113,27 @@ TEST(MapServicesTest, FilesThatCannotBeUsedLeaveTheRunningMap) {
     EXPECT_NE(response.message.find(path), std::string::npos) << response.message;
     EXPECT_NE(response.message.find("the running map stays"), std::string::npos) << response.message;
   }
-  EXPECT_FALSE(driving.save("/no/such/folder/map.bag").success);
+  EXPECT_NE(driving.save("/no/such/folder/map.bag").message.find("No such file"), std::string::npos);
+  EXPECT_FALSE(driving.save(text).success);
+  EXPECT_EQ(readFile(text), "no bag") << "only maps are replaced";
   ASSERT_TRUE(driving.feed(100, 110)) << "frames are counted on: the map is still there";
   EXPECT_EQ(driving.node.value("estimator", "submaps"), submaps);
   EXPECT_TRUE(driving.load(good).success);
+}
+
+TEST(MapServicesTest, AFolderForMapsKeepsTheServicesInIt) {
+  const TemporaryFolder folder;
+  const std::string maps = folder / "maps";
+  prepareOutputFolder(maps);
+  DrivingNode driving("kept_in", {"_node/map_folder:=" + maps});
+  ASSERT_TRUE(driving.isReady());
+  ASSERT_TRUE(driving.feed(0, 60));
+  EXPECT_FALSE(driving.save(folder / "map.bag").success);
+  EXPECT_TRUE(std::filesystem::is_empty(maps));
+  const SaveMap::Response saved = driving.save("map.bag");
+  EXPECT_NE(saved.message.find(maps + "/map.bag"), std::string::npos) << saved.message;
+  EXPECT_TRUE(driving.load("map.bag").success);
+  EXPECT_FALSE(driving.load("../maps/../map.bag").success);
 }
 
 TEST(MapServicesTest, NodeThatIsKilledWhileSavingLeavesAWholeFile) {
@@ -145,6 +162,8 @@ TEST(MapServicesTest, NodeThatIsKilledWhileSavingLeavesAWholeFile) {
     saving.wait();
     if (readFile(path) == old_content) ++untouched;
     EXPECT_NO_THROW(readMapFile(path, config, classes, [] { return true; })) << trial;
+    EXPECT_LE(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 4)
+        << "more than the newest temporary file is left";
   }
   EXPECT_GT(untouched, 0) << "none was killed before it had finished";
 }

@@ -24,7 +24,8 @@ struct NodeConfig {
   int trajectory_poses = 20000;
   double reset_after_jump_back_s = 1.0;
   bool publishes_tf = true;
-  std::string map;  ///< a map file; empty: none
+  std::string map;         ///< a map file; empty: none
+  std::string map_folder;  ///< outside of which no map is read or written; empty: anywhere
   StartMode mode = StartMode::kMapping;
   LiveConfig live;
 };

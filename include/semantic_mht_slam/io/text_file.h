@@ -18,13 +18,9 @@ std::string at(const std::string& path, int line);
 /// Throws InputError if something else than a regular file stands at `path` (a folder, a device, a link).
 void requireReplaceable(const std::string& path);
 
-/// Writes `content` to a temporary file beside `path`, syncs it and renames it, so that `path` is either the old file
-/// or the whole new one. Throws InputError naming the file and the system's reason.
+/// Writes a whole file, so that `path` is either the old file or the whole new one (`OutputFile`). Throws InputError
+/// naming the file and the system's reason.
 void writeFileAtomically(const std::string& path, std::string_view content);
-
-/// Gives a complete temporary file beside `path` that name, after its content is on the disk. Throws InputError naming
-/// `path` and the system's reason; then the temporary file is removed and `path` is as it was.
-void moveIntoPlace(const std::string& temporary, const std::string& path);
 
 /// Creates a folder and its parents unless they exist, and makes sure that files can be written to it.
 /// Throws InputError naming the folder and the reason.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -7,8 +8,8 @@
 
 namespace semantic_mht_slam {
 
-/// Lets `fill` write a bag beside `path`, syncs it and renames it, so that `path` is either the old file or the whole
-/// new one. Throws InputError naming `path` and the reason.
-void writeBagAtomically(const std::string& path, const std::function<void(rosbag::Bag&)>& fill);
+/// Lets `fill` write a bag, so that `path` is either the old file or the whole new one (`OutputFile`). Returns its size
+/// in bytes. Throws InputError naming the path and the reason.
+std::size_t writeBagAtomically(const std::string& path, const std::function<void(rosbag::Bag&)>& fill);
 
 }  // namespace semantic_mht_slam

@@ -28,7 +28,8 @@ SavedMap mapOf(
     const Slam& slam, const std::function<void()>& on_copied = [] {});
 
 /// Writes a map as a bag with the topics /map_header, /map_section, /map and /trajectory (docs/map_files.md). The file
-/// appears under its name when it is complete and on the disk. Returns its size in bytes. Throws InputError.
+/// appears under its name when it is complete and on the disk (`OutputFile`). Returns its size in bytes. Throws
+/// InputError, also where a file is in the way that is no map.
 std::size_t writeMapFile(const std::string& path, const SavedMap& map, const SystemConfig& config,
                          const ClassTable& classes);
 

@@ -1,0 +1,50 @@
+#include "semantic_mht_slam/ros/map_path.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "semantic_mht_slam/common/error.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path withHome(const std::string& path) {
+  if (path.empty() || path.front() != '~') return path;
+  const char* home = std::getenv("HOME");
+  if (home == nullptr || *home == '\0' || (path.size() > 1 && path[1] != '/')) {
+    throw InputError("'" + path + "': only ~/ is known, the home of the node's user");
+  }
+  return fs::path(home) / fs::path(path.substr(std::min<std::size_t>(2, path.size())));
+}
+
+/// Symbolic links followed, as far as there is something.
+fs::path resolved(const fs::path& path) {
+  std::error_code error;
+  const fs::path result = fs::weakly_canonical(path, error);
+  if (error) throw InputError("'" + path.string() + "': " + error.message());
+  return result.has_filename() ? result : result.parent_path();  // without a slash at the end
+}
+
+}  // namespace
+
+std::string mapPath(const std::string& asked, const std::string& map_folder) {
+  if (asked.empty()) throw InputError("the path is empty");
+  const fs::path folder = withHome(map_folder);
+  const fs::path given = withHome(asked);
+  const fs::path path = fs::absolute(given.is_absolute() ? given : folder / given).lexically_normal();
+  if (!path.has_filename()) throw InputError("'" + path.string() + "' names a folder, not a file");
+  if (folder.empty()) return path.string();
+  const fs::path inside = resolved(path);
+  const fs::path root = resolved(folder);
+  if (std::mismatch(root.begin(), root.end(), inside.begin(), inside.end()).first != root.end()) {
+    throw InputError("'" + path.string() + "' is outside of '" + root.string() +
+                     "' (node/map_folder), where maps are read and written");
+  }
+  return path.string();
+}
+
+}  // namespace semantic_mht_slam
