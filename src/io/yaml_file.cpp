@@ -13,6 +13,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr int kMaxDepth = 20;
+constexpr std::size_t kMaxSettings = 100000;  // more than any file has; a node may stand in itself many times over
 
 void flatten(const std::string& path, const YAML::Node& node, const std::string& prefix, std::vector<Setting>& settings,
              int depth = 0) {
@@ -24,6 +25,7 @@ void flatten(const std::string& path, const YAML::Node& node, const std::string&
     if (item.second.IsMap()) {
       flatten(path, item.second, key, settings, depth + 1);
     } else if (item.second.IsScalar()) {
+      if (settings.size() >= kMaxSettings) throw InputError(path + ": holds too many values");
       settings.push_back({key, item.second.Scalar(), originOf(path, item.second)});
     } else {
       throw InputError(originOf(path, item.first) + ": '" + key + "' has no single value");

@@ -130,8 +130,12 @@ SubmapClassifier SubmapClassifier::load(const std::string& path) {
     SubmapClassifier classifier(std::move(tree));
     classifier.setMinProb(minProbOf(storage, path));
     return classifier;
+  } catch (const InputError&) {
+    throw;
   } catch (const cv::Exception& error) {
     throw InputError(path + ": not a tree of train_submap_evaluator (" + error.err + ")");
+  } catch (const std::exception& error) {  // OpenCV does not check what it reads
+    throw InputError(path + ": not a tree of train_submap_evaluator (" + error.what() + ")");
   }
 }
 

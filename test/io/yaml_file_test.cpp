@@ -41,6 +41,20 @@ TEST_F(YamlFileTest, WhatIsNoMapOfScalarsIsRefused) {
   expectInputError([&] { readSettings(folder_ / "none.yaml"); }, {"none.yaml"});
 }
 
+TEST_F(YamlFileTest, WhatTheParserNeverEndsWithIsRefused) {
+  for (const char* content : {",", "]", "}", ",,,", "a: 1\n---\n,", ", a"}) {
+    expectInputError([&] { readSettings(write(content)); }, {"a.yaml"});
+    expectInputError([&] { readClassTable(write(content)); }, {"a.yaml"});
+  }
+  std::string doubling = "a0: &a0 {x: 1, y: 2}\n";
+  for (int i = 1; i < 19; ++i) {
+    const std::string name = "*a" + std::to_string(i - 1);
+    doubling += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " {p: " + name + ", q: " + name +
+                ", r: " + name + ", s: " + name + "}\n";
+  }
+  expectInputError([&] { readSettings(write(doubling)); }, {"a.yaml", "too many values"});
+}
+
 TEST_F(YamlFileTest, ShippedClassTablesAreReadable) {
   const std::string config = std::string(SMHT_SOURCE_DIR) + "/config/";
   const ClassTable kitti = readClassTable(config + "classes_semantic_kitti.yaml");

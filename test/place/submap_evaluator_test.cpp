@@ -112,6 +112,7 @@ TEST(SubmapClassifierTest, FilesWithOtherFeaturesNumbersOrTreesAreRefused) {
   expectRefused("min_prob: 0.", "min_prob: many", "min_prob");
   expectRefused("var:", "var: 7", "");
   expectRefused("value: ", "value: 3", "damaged");
+  expectRefused("value: ", ": ", "not a tree");
 }
 
 TEST(SubmapEvaluatorTest, WithoutATreeChecksEverySubmapThatHasLandmarks) {
