@@ -1,6 +1,8 @@
 #include "semantic_mht_slam/common/random.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "semantic_mht_slam/common/state_archive.h"
@@ -99,6 +101,9 @@ void Rng::transfer(StateArchive& archive) {
   archive(seed_);
   for (std::uint64_t& word : state_) archive(word);
   archive(spare_normal_, has_spare_normal_);
+  const bool gives_numbers =
+      std::any_of(std::begin(state_), std::end(state_), [](std::uint64_t word) { return word != 0; });
+  archive.require(gives_numbers, "random numbers that are all zero");
 }
 
 }  // namespace semantic_mht_slam

@@ -1,13 +1,19 @@
 #include "semantic_mht_slam/common/state_archive.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/state_checks.h"
 
 namespace semantic_mht_slam {
 namespace {
 
 constexpr int kMaxVarintBytes = 10;
+constexpr double kLargest = 1e100;    // its square is a number, too
+constexpr double kFurthest_m = 1e11;  // poses; odometry is used up to 1e10 m
+constexpr std::uint64_t kLastName = std::uint64_t{1} << 62U;
+constexpr std::int64_t kLastStamp = 4294967295LL * 1000000000LL;
 
 }  // namespace
 
@@ -37,7 +43,25 @@ void StateArchive::number(double& value) {
   for (int i = 0; i < 8; ++i) {
     result |= static_cast<std::uint64_t>(byte(static_cast<std::uint8_t>(bits >> (8 * i)))) << (8 * i);
   }
-  if (is_reading_) std::memcpy(&value, &result, sizeof value);
+  if (!is_reading_) return;
+  std::memcpy(&value, &result, sizeof value);
+  if (!(std::abs(value) <= kLargest)) fail("a number is not finite, or too large");
+}
+
+void StateArchive::requireClass(int class_index) const {
+  require(class_index >= 0 && (classes_ == kAnyClasses || class_index < classes_), "a class that the table lacks");
+}
+
+void StateArchive::requireClassCount(std::ptrdiff_t count) const {
+  require(classes_ == kAnyClasses || count == classes_, "probabilities of other classes than the table has");
+}
+
+void StateArchive::requireName(std::uint64_t landmark) const {
+  require(landmark > 0 && landmark < kLastName, "a name of a landmark that cannot be given");
+}
+
+void StateArchive::requireStamp(std::int64_t stamp) const {
+  require(stamp >= 0 && stamp <= kLastStamp, "a stamp before or after the time of ROS");
 }
 
 std::uint64_t StateArchive::varint(std::uint64_t value) {
@@ -79,16 +103,21 @@ void transfer(StateArchive& archive, std::string& text) {
 
 void transfer(StateArchive& archive, Pose& pose) {
   archive(pose.rotation.coeffs(), pose.translation_m);
+  const bool is_near = pose.translation_m.cwiseAbs().maxCoeff() <= kFurthest_m;
+  archive.require(pose.isValid() && is_near, "a pose that is none, or beyond any place");
 }
 
 void transfer(StateArchive& archive, StampedPose& pose) {
   auto& [stamp, T_world_base] = pose;
   archive(stamp, T_world_base);
+  archive.requireStamp(stamp);
 }
 
 void transfer(StateArchive& archive, Gaussian3& gaussian) {
   auto& [mean_m, cov_m2] = gaussian;
   archive(mean_m, cov_m2);
+  archive.require(mean_m.cwiseAbs().maxCoeff() <= kFurthest_m, "a place beyond any");
+  archive.require(isPositive(cov_m2), "a covariance that is not positive");
 }
 
 void transfer(StateArchive& archive, std::vector<bool>& list) {

@@ -1,11 +1,14 @@
 #include "graph_archive.h"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include <Eigen/LU>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/state_checks.h"
 
 #include "hierarchy.h"
 #include "loop_review.h"
@@ -24,6 +27,7 @@ void transferCost(StateArchive& archive, Measured measured, Matrix root, std::un
     root = cost->squareRoot();
   }
   archive(measured, root);
+  archive.require(isSquareRoot(root), "a measurement whose information is not positive");
   if (archive.isReading()) cost = std::make_unique<Cost>(measured, SquareRoot<Matrix>{root});
 }
 
@@ -40,10 +44,39 @@ void requireIndex(int index, std::size_t size) {
   if (place >= size) StateArchive::fail("a number names no part of the graph");
 }
 
+/// Nodes know the landmarks and loop closures that name them, and no others.
+void requireReferences(const StateArchive& archive, const GraphState& graph) {
+  std::vector<std::set<std::int64_t>> landmarks(graph.nodes.size());
+  for (const auto& [number, landmark] : graph.landmarks) {
+    archive.require(!landmark.sightings.empty() && landmark.sightings.front().node == landmark.anchor,
+                    "a landmark that its anchor did not see first");
+    int before = landmark.anchor;
+    for (const SightingFactor& sighting : landmark.sightings) {
+      archive.require(sighting.node >= before && graph.keptNumber(sighting.landmark) == number,
+                      "a sighting of another landmark, or out of order");
+      before = sighting.node;
+      landmarks[sighting.node].insert(number);
+    }
+  }
+  std::vector<std::vector<int>> loops(graph.nodes.size());
+  for (int i = 0; i < graph.loopCount(); ++i) {
+    loops[graph.loops[i].constraint.from].push_back(i);
+    loops[graph.loops[i].constraint.to].push_back(i);
+  }
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    const NodeState& node = graph.nodes[i];
+    const std::set<std::int64_t> known(node.landmarks.begin(), node.landmarks.end());
+    archive.require(known == landmarks[i] && known.size() == node.landmarks.size(),
+                    "a node that knows other landmarks than it saw");
+    archive.require(node.loops == loops[i], "a node that knows other loop closures than end there");
+  }
+}
+
 }  // namespace
 
 void transfer(StateArchive& archive, SightingFactor& sighting) {
   archive(sighting.node, sighting.landmark);
+  archive.requireName(static_cast<std::uint64_t>(sighting.landmark));
   transferCost(archive, sighting.cost);
 }
 
@@ -53,17 +86,22 @@ void transfer(StateArchive& archive, LandmarkState& landmark) {
 
 void transfer(StateArchive& archive, PriorFactor& prior) {
   archive(prior.T_world_node, prior.cov);
+  archive.require(isPositive(prior.cov), "a prior whose covariance is not positive");
   transferCost(archive, prior.cost);
 }
 
 /// Without the cost of odometry, which `PoseGraph` makes again.
 void transfer(StateArchive& archive, NodeState& node) {
   archive(node.block, node.landmarks, node.loops, node.priors, node.shared_errors);
+  archive.require(node.pose().isValid(), "a node whose pose is none");
 }
 
 void transfer(StateArchive& archive, LoopState3& loop) {
   auto& [from, to, T_from_to, cov] = loop.constraint;
   archive(from, to, T_from_to, cov, loop.state, loop.is_reviewed, loop.is_readmitted);
+  archive.require(isPositive(cov) && from != to, "a loop closure whose covariance is not positive, or of one node");
+  archive.require(loop.state >= LoopState::kAccepted && loop.state <= LoopState::kDoesNotFit,
+                  "a loop closure in a state that there is not");
   if (archive.isReading()) loop.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
 }
 
@@ -83,12 +121,19 @@ void GraphState::transfer(StateArchive& archive) {
     requireIndex(loop.constraint.from, nodes.size());
     requireIndex(loop.constraint.to, nodes.size());
   }
+  if (archive.isReading()) requireReferences(archive, *this);
 }
 
 void LoopReview::transfer(StateArchive& archive, const GraphState& graph) {
   archive(fits_odometry_, agrees_, reviewed_);
   if (fits_odometry_.size() != graph.loops.size() || agrees_.size() != graph.loops.size()) {
     StateArchive::fail("a loop closure was not looked at");
+  }
+  archive.require(reviewed_ >= 0 && reviewed_ <= graph.loopCount(),
+                  "loop closures that were looked at before they came");
+  for (int i = firstOpen(graph); i < graph.loopCount(); ++i) {
+    const auto needed = static_cast<std::size_t>(std::min(i, config_.compared_loops));
+    archive.require(agrees_[i].size() >= needed, "made with fewer graph.compared_loops than now");
   }
   if (!archive.isReading()) return;
   for (const LoopState3& loop : graph.loops) {
@@ -113,6 +158,7 @@ void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::ve
       const auto& [T_previous_node, cov] = odometry[i];
       review.extendOdometry(T_previous_node, cov, i == 0);
       if (i == 0) continue;
+      archive.require(isPositive(cov), "odometry whose covariance is not positive");
       graph.nodes[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_node, cov.inverse());
     }
   }
@@ -126,6 +172,22 @@ void Hierarchy::LoopLink::transfer(StateArchive& archive) {
 void Hierarchy::transfer(StateArchive& archive) {
   archive(skeleton_, loop_links_, landmark_links_, touched_, prior_links_, bend_, news_, is_pending_);
   priors_in_ = std::accumulate(prior_links_.begin(), prior_links_.end(), std::size_t{0});
+}
+
+bool Hierarchy::fits(const GraphState& graph, int nodes) const {
+  const auto isLink = [this](const LoopLink& loop) { return !loop.link || skeleton_.hasLink(*loop.link); };
+  const auto isNode = [&](int node) { return node >= 0 && node < nodes; };
+  const auto up = [nodes](int size) { return static_cast<std::size_t>((nodes + size - 1) / size); };
+  bool fits =
+      nodes >= 0 && nodes <= graph.nodeCount() && prior_links_.size() == static_cast<std::size_t>(nodes) &&
+      static_cast<std::size_t>(skeleton_.hubs()) == up(config_.chunk_nodes) &&
+      bend_.size() == up(config_.window_nodes) && loop_links_.size() <= graph.loops.size() && news_ >= 0.0 &&
+      std::all_of(loop_links_.begin(), loop_links_.end(), isLink) &&
+      std::all_of(touched_.begin(), touched_.end(), [&](int node) { return node >= 0 && node < graph.nodeCount(); }) &&
+      std::all_of(bend_.begin(), bend_.end(), [](double bend_m) { return bend_m >= 0.0; });
+  for (const auto& [node, shared] : landmark_links_) fits = fits && isNode(node) && shared.link && isLink(shared);
+  for (int i = 0; fits && i < nodes; ++i) fits = prior_links_[i] <= graph.nodes[i].priors.size();
+  return fits;
 }
 
 void Skeleton::Link::transfer(StateArchive& archive) {
@@ -153,11 +215,13 @@ void Skeleton::transfer(StateArchive& archive) {
   for (const auto& block : hubs) {
     Pose pose;
     readBlock(block.data(), pose);
+    archive.require(pose.isValid(), "a hub whose pose is none");
     addHub(pose);
   }
   for (const Link& link : links_) {
     if (link.from != kWorld) requireIndex(link.from, hubs.size());
     requireIndex(link.to, hubs.size());
+    archive.require(link.from != link.to, "a link of one hub with itself");
   }
   for (const int link : active) {
     requireIndex(link, links_.size());

@@ -64,6 +64,9 @@ class Hierarchy {
   /// Into an empty hierarchy, or out of one.
   void transfer(StateArchive& archive);
 
+  /// Whether it may be that of a graph, as far as its first `nodes`.
+  bool fits(const GraphState& graph, int nodes) const;
+
   /// True if links came or went or landmarks were merged since the skeleton was solved.
   bool hasNews() const { return is_pending_ || news_ > 0.0 || !touched_.empty(); }
 

@@ -106,6 +106,8 @@ void PoseGraph::Impl::regroup(std::vector<std::vector<std::int64_t>> groups) {
 void PoseGraph::Impl::transfer(StateArchive& archive) {
   transferGraph(archive, config_, odometry_, graph_, review_);
   archive(hierarchy_, in_hierarchy_, reported_);
+  archive.require(hierarchy_.fits(graph_, in_hierarchy_), "a coarse graph of other nodes than there are");
+  archive.require(reported_.size() <= graph_.loops.size(), "more loop closures told than there are");
 }
 
 /// True if the solution was not cut short.

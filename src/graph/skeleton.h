@@ -34,6 +34,7 @@ class Skeleton {
   /// of the link, which is not active yet.
   int addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov,
               const SharedErrors& shared_errors = SharedErrors::Zero());
+  bool hasLink(int link) const { return link >= 0 && link < static_cast<int>(links_.size()); }
   void setActive(int link, bool is_active);
   bool isActive(int link) const { return links_[link].id != nullptr; }
 

@@ -10,7 +10,7 @@ namespace semantic_mht_slam {
 
 void IdentityEvent::transfer(StateArchive& archive) {
   archive(kind, submap, closure, a, b);
-  if (kind > Kind::kSplit) StateArchive::fail("an event of no known kind");
+  if (kind < Kind::kMerged || kind > Kind::kSplit) StateArchive::fail("an event of no known kind");
 }
 
 void Identity::add(const Submap& submap) {

@@ -1,8 +1,10 @@
 #include "semantic_mht_slam/map/map_state.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
+#include "semantic_mht_slam/common/state_checks.h"
 #include "semantic_mht_slam/map/map.h"
 
 // The state of the finished part of the map. What follows from something else that is written is not written again.
@@ -33,16 +35,20 @@ class SceneOfSubmap {
   /// Objects that the submap gives are written as their ids.
   void transfer(StateArchive& archive, std::vector<SceneObject>& objects) const {
     const std::size_t count = archive.count(objects.size());
-    if (archive.isReading()) objects.assign(count, {});
+    if (archive.isReading()) objects.clear();
     LandmarkId last = 0;
-    for (SceneObject& object : objects) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (archive.isReading()) objects.emplace_back();
+      SceneObject& object = objects[i];
       const std::optional<SceneObject> known = archive.isReading() ? std::nullopt : find(object.landmark);
       bool is_known = known && areEqual(*known, object);
       LandmarkId step = object.landmark - last;
       archive(is_known, step);
       object.landmark = last += step;
+      archive.requireName(object.landmark);
       if (!is_known) {
         archive(object.position_m, object.cov_m2, object.class_index);
+        archive.require(isCovariance(object.cov_m2), "an object whose covariance is not positive");
       } else if (archive.isReading()) {
         const std::optional<SceneObject> found = find(object.landmark);
         if (!found) StateArchive::fail("a scene shows a landmark that its submap lacks");
@@ -57,6 +63,14 @@ class SceneOfSubmap {
   double floor_m_;
 };
 
+/// Names of two landmarks that are one.
+void requirePairs(const StateArchive& archive, const std::vector<SameLandmark>& pairs) {
+  for (const auto& [a, b] : pairs) {
+    archive.requireName(a);
+    archive.requireName(b);
+  }
+}
+
 template <class IdType, class Value>
 void require(IdType id, const IdVector<IdType, Value>& list) {
   if (!list.has(id)) StateArchive::fail("a number names no submap, keyframe or closure");
@@ -67,6 +81,7 @@ void require(IdType id, const IdVector<IdType, Value>& list) {
 void transfer(StateArchive& archive, MixtureComponent& component) {
   auto& [weight, position] = component;
   archive(weight, position);
+  archive.require(weight > 0.0 && isProbability(weight), "a component without weight");
 }
 
 void transfer(StateArchive& archive, MixtureLandmark& landmark) {
@@ -82,6 +97,12 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
     position = components.front().position;
   }
   archive(class_probs, existence_prob, observations, first_submap, last_submap, merged_ids);
+  archive.requireName(id);
+  archive.requireClassCount(class_probs.size());
+  archive.require(!components.empty(), "a landmark without a place");
+  archive.require(areProbabilities(class_probs) && isProbability(existence_prob), "probabilities that are none");
+  archive.require(observations >= 0 && !first_submap.isNone() && first_submap <= last_submap,
+                  "a landmark that was seen before it was seen first");
 }
 
 void transferAssociations(StateArchive& archive, std::vector<DetectionAssociation>& associations) {
@@ -97,8 +118,12 @@ void transferAssociations(StateArchive& archive, std::vector<DetectionAssociatio
     std::uint64_t landmark_step = landmark - last.landmark;
     archive(frame_step, row_step, landmark_step);
     frame = last.frame + frame_step;
-    row = static_cast<int>(row_step + (frame_step == 0 ? last.row : 0));
+    const std::int64_t row_now = row_step + (frame_step == 0 ? last.row : 0);
+    archive.require(row_now >= 0 && row_now <= std::numeric_limits<int>::max() && frame >= last.frame,
+                    "detections that are not in order");
+    row = static_cast<int>(row_now);
     landmark = last.landmark + landmark_step;
+    if (landmark != kNoLandmark) archive.requireName(landmark);
     last = {frame, row, landmark == kNoLandmark ? last.landmark : landmark};
   }
 }
@@ -106,6 +131,9 @@ void transferAssociations(StateArchive& archive, std::vector<DetectionAssociatio
 void transfer(StateArchive& archive, NearLandmarks& near) {
   auto& [a, b, frames] = near;
   archive(a, b, frames);
+  archive.requireName(a);
+  archive.requireName(b);
+  archive.require(a < b && frames >= 0, "near landmarks that are not in order");
 }
 
 void transfer(StateArchive& archive, Submap& submap) {
@@ -113,12 +141,23 @@ void transfer(StateArchive& archive, Submap& submap) {
   archive(id, begin, end, T_odom_submap, landmarks);
   transferAssociations(archive, associations);
   archive(duplicates, near);
+  archive.requireStamp(begin);
+  archive.requireStamp(end);
+  archive.require(begin <= end, "a submap that ends before it begins");
+  requirePairs(archive, duplicates);
+  archive.require(areRising(landmarks, [](const MixtureLandmark& landmark) { return landmark.id; }),
+                  "landmarks whose ids do not rise");
+  for (const MixtureLandmark& landmark : landmarks) {
+    archive.require(landmark.last_submap == id, "a landmark of another submap");
+  }
 }
 
 /// Without the scene.
 void transfer(StateArchive& archive, Keyframe& keyframe) {
   archive(keyframe.frame, keyframe.submap, keyframe.stamp, keyframe.driven_m, keyframe.T_odom_base);
   archive(keyframe.turned_rad);
+  archive.requireStamp(keyframe.stamp);
+  archive.require(keyframe.driven_m >= 0.0 && keyframe.turned_rad >= 0.0, "a negative way");
 }
 
 /// Of closures that never were in the pose graph only what people look at is kept.
@@ -129,6 +168,10 @@ void transfer(StateArchive& archive, LoopClosureRecord& closure) {
   archive(source, query_keyframe, match_keyframe, is_verified, is_accepted, reason, score, inliers, T_match_query);
   archive(histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob);
   if (is_verified) archive(cov, pairs);
+  archive.require(source >= ClosureSource::kPlace && source <= ClosureSource::kRevisit, "a source that there is not");
+  archive.require(inliers >= 0 && isNotNegative(cov), "a closure whose covariance is not positive");
+  archive.require(is_verified || !is_accepted, "a closure that holds without a check");
+  requirePairs(archive, pairs);
 }
 
 void Map::transferSubmaps(StateArchive& archive) {
@@ -146,7 +189,7 @@ void Map::transferKeyframes(StateArchive& archive, int classes, double scene_flo
   archive(keyframes_, T_map_keyframe_, first_keyframe_, closures_, identity_, scene_floor_m);
   if (T_map_keyframe_.size() != keyframes_.size()) StateArchive::fail("a keyframe without a pose");
   if (first_keyframe_.size() != submaps_.size()) StateArchive::fail("a submap without keyframes");
-  for (const KeyframeId first : first_keyframe_) require(first, keyframes_);
+  requireKeyframesOfSubmaps(archive);
   for (Keyframe& keyframe : keyframes_) {
     require(keyframe.submap, submaps_);
     SceneOfSubmap(*submaps_[keyframe.submap], keyframe.T_odom_base, scene_floor_m)
@@ -155,11 +198,41 @@ void Map::transferKeyframes(StateArchive& archive, int classes, double scene_flo
       if (object.class_index < 0 || object.class_index >= classes) StateArchive::fail("an object of no known class");
     }
   }
+  if (!archive.isReading()) return;
+  SubmapId newest(0);
   for (const LoopClosureRecord& closure : closures_) {
     require(closure.query_keyframe, keyframes_);
     require(closure.match_keyframe, keyframes_);
+    const SubmapId submap = keyframes_[closure.query_keyframe].submap;
+    archive.require(submap >= newest && closure.query_keyframe != closure.match_keyframe,
+                    "closures that are not in order");
+    newest = submap;
   }
-  if (archive.isReading()) restore();
+  for (const IdentityEvent& event : identity_.ledger()) {
+    require(event.submap, submaps_);
+    if (!event.closure.isNone()) require(event.closure, closures_);
+    archive.requireName(event.a);
+    archive.requireName(event.b);
+  }
+  restore();
+}
+
+/// Each submap has keyframes, the next ones in their order.
+void Map::requireKeyframesOfSubmaps(const StateArchive& archive) const {
+  SubmapId submap(0);
+  for (const KeyframeId id : keyframes_.ids()) {
+    const bool begins_next = first_keyframe_.has(submap) && first_keyframe_[submap] == id;
+    if (begins_next) ++submap;
+    archive.require(submap.index() > 0 && keyframes_[id].submap == SubmapId(submap.index() - 1),
+                    "keyframes of other submaps");
+    archive.require(id == KeyframeId(0) || keyframes_[KeyframeId(id.index() - 1)].driven_m <= keyframes_[id].driven_m,
+                    "keyframes that are not in the order of the drive");
+  }
+  archive.require(submap == submaps_.nextId(), "a submap without keyframes");
+}
+
+LandmarkId Map::newestName() const {
+  return newest_submap_.empty() ? kNoLandmark : newest_submap_.rbegin()->first;
 }
 
 /// What follows from submaps and closures.

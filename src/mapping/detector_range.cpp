@@ -35,6 +35,9 @@ double DetectorRange::factor() const {
 
 void DetectorRange::transfer(StateArchive& archive) {
   archive(ranges_m_, frames_);
+  const bool are_ranges =
+      std::all_of(ranges_m_.begin(), ranges_m_.end(), [](double range_m) { return range_m >= 0.0; });
+  archive.require(are_ranges && frames_ >= 0, "a negative range");
 }
 
 }  // namespace semantic_mht_slam

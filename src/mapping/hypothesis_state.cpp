@@ -1,8 +1,12 @@
 #include "semantic_mht_slam/mapping/hypothesis_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
+
+#include "semantic_mht_slam/common/log_math.h"
+#include "semantic_mht_slam/common/state_checks.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -75,11 +79,17 @@ void transferLeaf(StateArchive& archive, const Landmarks& shared_landmarks, cons
          expected_missed] = leaf;
   archive(id, parent_id, born_frame, log_weight, false_positives, offset, map_offset, expected_found, expected_missed);
   histories.transferPointer(archive, history);
-  landmarks.resize(archive.count(landmarks.size()));
-  for (HypothesisLandmark& landmark : landmarks) {
+  archive.require(log_weight <= kRounding && false_positives >= 0 && expected_found >= 0 && expected_missed >= 0.0,
+                  "a hypothesis of a weight above one, or a negative count");
+  const std::size_t count = archive.count(landmarks.size());
+  if (archive.isReading()) landmarks.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (archive.isReading()) landmarks.emplace_back();
+    HypothesisLandmark& landmark = landmarks[i];
     shared_landmarks.transferPointer(archive, landmark.tracked);
     archive(landmark.existence);
     if (!landmark.tracked) StateArchive::fail("a hypothesis lacks a landmark");
+    archive.require(i == 0 || landmarks[i - 1]->id < landmark->id, "landmarks whose ids do not rise");
   }
 }
 
@@ -88,11 +98,13 @@ void transferLeaf(StateArchive& archive, const Landmarks& shared_landmarks, cons
 void transfer(StateArchive& archive, PoseOffset& offset) {
   auto& [mean, cov] = offset;
   archive(mean, cov);
+  archive.require(isNotNegative(cov), "an offset whose covariance is not positive");
 }
 
 void transfer(StateArchive& archive, Existence& existence) {
   auto& [log_odds, visible_prob, miss_likelihood] = existence;
   archive(log_odds, visible_prob, miss_likelihood);
+  archive.require(isProbability(visible_prob) && miss_likelihood >= 0.0, "probabilities that are none");
 }
 
 void transfer(StateArchive& archive, TrackedLandmark& landmark) {
@@ -100,6 +112,9 @@ void transfer(StateArchive& archive, TrackedLandmark& landmark) {
          earlier, is_expected] = landmark;
   archive(id, position, class_probs, observations, is_from_earlier_submap);
   archive(first_submap, last_submap, updated_at_m, earlier, is_expected);
+  archive.requireName(id);
+  archive.requireClassCount(class_probs.size());
+  archive.require(areProbabilities(class_probs) && observations >= 0, "probabilities that are none");
 }
 
 void transferLeaves(StateArchive& archive, std::vector<MapHypothesis>& leaves) {
@@ -115,9 +130,16 @@ void transferLeaves(StateArchive& archive, std::vector<MapHypothesis>& leaves) {
   }
   transferValues(archive, landmarks);
   transferValues(archive, histories);
-  leaves.resize(archive.count(leaves.size()));
-  if (leaves.empty()) StateArchive::fail("a tree without leaves");
-  for (MapHypothesis& leaf : leaves) transferLeaf(archive, landmarks, histories, leaf);
+  const std::size_t count = archive.count(leaves.size());
+  if (count == 0) StateArchive::fail("a tree without leaves");
+  if (archive.isReading()) leaves.clear();
+  std::vector<double> log_weights;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (archive.isReading()) leaves.emplace_back();
+    transferLeaf(archive, landmarks, histories, leaves[i]);
+    log_weights.push_back(leaves[i].log_weight);
+  }
+  archive.require(std::abs(logSumExp(log_weights)) < kRounding, "hypotheses whose weights do not add up to one");
 }
 
 }  // namespace semantic_mht_slam

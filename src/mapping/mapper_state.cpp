@@ -1,4 +1,7 @@
+#include <set>
+
 #include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/common/state_checks.h"
 #include "semantic_mht_slam/map/map_state.h"
 #include "semantic_mht_slam/mapping/hypothesis_state.h"
 #include "semantic_mht_slam/mapping/mapper.h"
@@ -9,6 +12,11 @@
 // What of the mapper outlives a program: the open submap with its hypotheses, and all that was learned on the way.
 namespace semantic_mht_slam {
 namespace {
+
+constexpr int kMostCounted = 1 << 29;       // that can be doubled
+constexpr Eigen::Index kMostErrors = 256;   // of a stretch; some dozens come
+constexpr std::size_t kMostStretches = 64;  // ten are kept
+constexpr double kLargestLog = 100.0;       // whose exponential is a number
 
 /// A list that has one entry a class, or one a cell, of the present configuration.
 template <class List>
@@ -38,6 +46,12 @@ void transferLandmarks(StateArchive& archive, std::vector<HypothesisLandmark>& l
 
 void RunningMedian::transfer(StateArchive& archive) {
   archive(bins_, count_);
+  std::int64_t sum = 0;
+  for (const int bin : bins_) {
+    archive.require(bin >= 0, "a negative count");
+    sum += bin;
+  }
+  archive.require(sum == count_ && count_ > 0 && count_ <= kMostCounted, "a median of other values than were counted");
   if (archive.isReading()) {
     median_bin_ = below_ = 0;
     moveToMedian();
@@ -47,6 +61,7 @@ void RunningMedian::transfer(StateArchive& archive) {
 void DetectorCalibration::PastFrame::transfer(StateArchive& archive) {
   archive(T_odom_base, positions_m, classes);
   if (classes.size() != positions_m.size()) StateArchive::fail("a frame with more positions than classes");
+  for (const ClassIndex class_index : classes) archive.requireClass(class_index);
 }
 
 void DetectorCalibration::ClassStatistics::transfer(StateArchive& archive) {
@@ -80,6 +95,7 @@ void CentroidBias::transfer(StateArchive& archive) {
 
 void DetectionRate::Cell::transfer(StateArchive& archive) {
   archive(detected, frames);
+  archive.require(detected >= 0.0 && detected <= frames, "more detections than frames");
 }
 
 void DetectionRate::transfer(StateArchive& archive) {
@@ -88,12 +104,16 @@ void DetectionRate::transfer(StateArchive& archive) {
 
 void ClassConfusion::transfer(StateArchive& archive) {
   transferFixed(archive, counts_);
+  for (const double count : counts_) archive.require(count >= 0.0, "a negative count");
   for (ClassIndex object = 0; object < class_count_; ++object) evaluate(object);
 }
 
 void MapBranching::transfer(StateArchive& archive) {
   auto& [landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = map_;
   archive(landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad);
+  archive.require(stddev_xy_m >= 0.0 && stddev_z_m >= 0.0 && stddev_yaw_rad >= 0.0, "a negative deviation");
+  archive.require(areRising(landmarks, [](const MixtureLandmark& landmark) { return landmark.id; }),
+                  "an earlier map whose ids do not rise");
   if (archive.isReading()) restart(std::move(map_));
   archive(next_attempt_m_);
 }
@@ -102,6 +122,15 @@ void MultiHypothesisTree::transfer(StateArchive& archive) {
   archive(tracking_.detectionRate(), model_.confusion(), branching_);
   transferLeaves(archive, leaves_);
   archive(next_hypothesis_id_);
+  for (const MapHypothesis& leaf : leaves_) {
+    archive.require(leaf.id < next_hypothesis_id_, "a hypothesis with an id that is still to be given");
+    for (const HypothesisLandmark& landmark : leaf.landmarks) {
+      const int earlier = landmark->earlier;
+      archive.require(earlier >= -1 && earlier < branching_.earlierLandmarks(),
+                      "a landmark that the earlier map lacks");
+      archive.require(!landmark->is_expected || (earlier >= 0 && leaf.map_offset), "a landmark that nobody expects");
+    }
+  }
 }
 
 void LandmarkPropagation::transfer(StateArchive& archive) {
@@ -116,6 +145,8 @@ void ErrorInformation::transfer(StateArchive& archive) {
   if (matrix.rows() != size || matrix.cols() != size || design.rows() != size || effect.rows() != size) {
     StateArchive::fail("errors of the odometry whose sizes do not fit");
   }
+  archive.require(size <= kMostErrors && isNotNegative(matrix) && (design.array() >= 0.0).all(),
+                  "errors of the odometry that are none");
 }
 
 void VarianceComponents::transfer(StateArchive& archive) {
@@ -131,6 +162,11 @@ void VarianceComponents::transfer(StateArchive& archive) {
     fits = fits && stretch.design.cols() == parts && stretch.effect.cols() == effects;
   }
   if (!fits) StateArchive::fail("errors of the odometry in other parts");
+  archive.require(isPositive(prior_precision_) && isNotNegative(effect_information_) && isNotNegative(effect_cov_),
+                  "errors of the odometry whose precision is not positive");
+  archive.require(log_variance_.cwiseAbs().maxCoeff() <= kLargestLog && log_uncertainty_.minCoeff() >= 0.0,
+                  "errors of the odometry beyond any");
+  archive.require(stretches_.size() <= kMostStretches, "more errors of the odometry than are kept");
 }
 
 void OdometryLearning::transfer(StateArchive& archive) {
@@ -140,6 +176,15 @@ void OdometryLearning::transfer(StateArchive& archive) {
 
 void StationKeeping::Seen::transfer(StateArchive& archive) {
   archive(place, measurement, T_station_base, detection);
+}
+
+bool StationKeeping::fits(const std::vector<Frame>& frames) const {
+  for (const Station& station : stations_) {
+    for (const Seen& seen : station.seen) {
+      if (seen.place >= frames.size() || seen.measurement >= frames[seen.place].detections.size()) return false;
+    }
+  }
+  return true;
 }
 
 void StationKeeping::Station::transfer(StateArchive& archive) {
@@ -156,6 +201,34 @@ void Mapper::transfer(StateArchive& archive) {
   for (const std::size_t k : spaced_) {
     if (k >= frames_.size()) StateArchive::fail("a number names no frame of the open submap");
   }
+  if (archive.isReading()) requireOpenSubmap(archive);
+}
+
+/// The open submap: its frames are those that its hypotheses tell of.
+void Mapper::requireOpenSubmap(const StateArchive& archive) const {
+  archive.require(is_open_ != frames_.empty(), "a submap without frames, or frames without a submap");
+  archive.require(areRising(frames_, [](const Frame& frame) { return frame.index; }) &&
+                      areRising(frames_, [](const Frame& frame) { return frame.stamp; }) &&
+                      areRising(spaced_, [](std::size_t k) { return k; }),
+                  "frames that are not in order");
+  archive.require(stations_.fits(frames_), "a number names no detection of the open submap");
+  if (!is_open_) return;
+  std::set<const AssociationRecord*> known;  // branches share their beginnings
+  for (const MapHypothesis& leaf : tree_.leaves()) {
+    const AssociationRecord* record = leaf.history.get();
+    for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame, record = record->previous.get()) {
+      const bool fits = record != nullptr && record->frame == frame->index &&
+                        record->landmark_of_measurement.size() == frame->detections.size();
+      archive.require(fits, "a hypothesis of other frames than the submap has");
+      if (!known.insert(record).second) break;
+    }
+    archive.require(record == nullptr || known.count(record) > 0, "a hypothesis of more frames than the submap has");
+  }
+}
+
+bool Mapper::fits(std::size_t finished_submaps) const {
+  if (id_.isNone()) return finished_submaps == 0 && !is_open_;
+  return id_.index() + (is_open_ ? 0 : 1) == finished_submaps;
 }
 
 }  // namespace semantic_mht_slam

@@ -41,6 +41,7 @@ Motion operator-(const Motion& a, const Motion& b) {
 
 void transfer(StateArchive& archive, Motion& motion) {
   archive(motion.way_m, motion.turn_rad);
+  archive.require(motion.way_m >= 0.0 && motion.turn_rad >= 0.0, "a negative way");
 }
 
 double headingOf(const Eigen::Quaterniond& rotation) {

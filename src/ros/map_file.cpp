@@ -13,6 +13,7 @@
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/output_file.h"
 #include "semantic_mht_slam/ros/atomic_bag.h"
+#include "semantic_mht_slam/ros/bag_limits.h"
 #include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
@@ -83,6 +84,7 @@ class MapReader {
 
   LoadedMap read() {
     try {
+      requireModestBag(path_);
       rosbag::Bag bag(path_, rosbag::bagmode::Read);
       const MapHeader header = readHeader(bag);
       check(header);
@@ -145,10 +147,13 @@ class MapReader {
     map.has_same_parameters = header.config == parametersOf(config_.slam);
     map.state.source = path_;
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));
+    std::uint64_t left = mostContent(std::filesystem::file_size(path_));
     for (const rosbag::MessageInstance& instance : view) {
       const auto section = instantiate<MapSection>(instance);
       require(digestOf(section->data) == section->digest,
               "damaged: the digest of section '" + section->name + "' is wrong");
+      require(section->data.size() <= left, "section '" + section->name + "' holds more than there can be");
+      left -= section->data.size();
       const bool goes_on = !map.state.sections.empty() && map.state.sections.back().name == section->name;
       if (!goes_on) map.state.sections.push_back({section->name, static_cast<int>(section->version), {}});
       map.state.sections.back().bytes.append(section->data.begin(), section->data.end());

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/common/state_checks.h"
 #include "semantic_mht_slam/slam/drift_prior.h"
 
 namespace semantic_mht_slam {
@@ -32,6 +33,7 @@ void transfer(StateArchive& archive, SubmapPrediction& prediction) {
   auto& [prior, T_map_keyframe] = prediction;
   auto& [T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = prior;
   archive(T_a_b, stddev_xy_m, stddev_z_m, stddev_yaw_rad, T_map_keyframe);
+  archive.require(stddev_xy_m >= 0.0 && stddev_z_m >= 0.0 && stddev_yaw_rad >= 0.0, "a negative deviation");
 }
 
 LoopCloser::LoopCloser(const BackEndConfig& config, const ClassTable& classes, const RegistrationConfig& registration,
@@ -174,6 +176,7 @@ void LoopCloser::transfer(StateArchive& archive, const Map& map) {
   for (const KeyframeId keyframe : keyframe_of_place_) {
     if (!map.keyframes().has(keyframe)) StateArchive::fail("a place that is no keyframe");
   }
+  archive.require(areRising(keyframe_of_place_, [](KeyframeId id) { return id; }), "places that are not in order");
   IdVector<SubmapId, PlacesOfSubmap> places;
   if (archive.isReading()) {
     for (const auto& submap : map.submaps()) {

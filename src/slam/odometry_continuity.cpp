@@ -57,6 +57,7 @@ void OdometryContinuity::add(const StampedPose& next) {
 
 void OdometryContinuity::transfer(StateArchive& archive) {
   archive(last_, steps_, speed_m_per_s_, turn_rate_rad_per_s_);
+  archive.require(steps_ >= 0 && speed_m_per_s_ >= 0.0 && turn_rate_rad_per_s_ >= 0.0, "a negative speed");
 }
 
 }  // namespace semantic_mht_slam

@@ -65,6 +65,8 @@ std::vector<SessionSummary> Sessions::summary(const Map& map) const {
 void transfer(StateArchive& archive, MapFix& fix) {
   auto& [stamp, T_odom_base, T_map_base, cov] = fix;
   archive(stamp, T_odom_base, T_map_base, cov);
+  archive.requireStamp(stamp);
+  archive.require(isNotNegative(cov), "a covariance of a place found that is none");
 }
 
 void Sessions::Session::transfer(StateArchive& archive) {
@@ -73,9 +75,26 @@ void Sessions::Session::transfer(StateArchive& archive) {
 
 void Sessions::transfer(StateArchive& archive) {
   archive(odometry_, sessions_);
-  if (sessions_.empty() || sessions_.back().first_odometry > odometry_.size()) {
-    StateArchive::fail("sessions of no odometry");
+  archive.require(!sessions_.empty() && sessions_.front().first_odometry == 0 &&
+                      sessions_.back().first_odometry <= odometry_.size(),
+                  "sessions of no odometry");
+  for (std::size_t s = 0; s < sessions_.size(); ++s) {
+    const std::size_t begin = sessions_[s].first_odometry;
+    const std::size_t end = s + 1 == sessions_.size() ? odometry_.size() : sessions_[s + 1].first_odometry;
+    archive.require(begin <= end, "sessions that are not in order");
+    for (std::size_t i = begin; archive.isReading() && i + 1 < end; ++i) {
+      archive.require(odometry_[i].stamp < odometry_[i + 1].stamp, "odometry whose stamps do not rise");
+    }
   }
+}
+
+bool Sessions::fits(const Map& map) const {
+  KeyframeId before(0);
+  for (const Session& session : sessions_) {
+    if (session.first_keyframe < before || session.first_keyframe > map.keyframes().nextId()) return false;
+    before = session.first_keyframe;
+  }
+  return true;
 }
 
 }  // namespace semantic_mht_slam

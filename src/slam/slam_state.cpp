@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/state_checks.h"
 #include "semantic_mht_slam/models/detection_state.h"
 #include "semantic_mht_slam/slam/drift_prior.h"
 #include "semantic_mht_slam/slam/slam.h"
@@ -27,10 +28,16 @@ void transfer(StateArchive& archive, UncertainPose& pose) {
 
 void FrameAssembler::WaitingFrame::transfer(StateArchive& archive) {
   archive(index, stamp, detections);
+  archive.requireStamp(stamp);
 }
 
 void FrameAssembler::transfer(StateArchive& archive) {
   archive(odometry_, waiting_, next_index_, last_taken_, counters_);
+  archive.require(areRising(odometry_, [](const StampedPose& pose) { return pose.stamp; }),
+                  "odometry whose stamps do not rise");
+  archive.require(areRising(waiting_, [](const WaitingFrame& frame) { return frame.stamp; }),
+                  "frames whose stamps do not rise");
+  if (last_taken_) archive.requireStamp(*last_taken_);
 }
 
 namespace {
@@ -58,6 +65,7 @@ void transferMode(StateArchive& archive, const SlamConfig& config, SlamParts& pa
   const auto* localizing = std::get_if<Localizing>(&parts.mode);
   bool is_mapping_wanted = localizing == nullptr || localizing->until_found;
   archive(kind, is_mapping_wanted);
+  archive.require(kind < std::variant_size_v<Mode>, "a mode that there is not");
   if (archive.isReading()) parts.mode = modeAgain(kind, is_mapping_wanted, config, parts.sessions);
 }
 
@@ -65,6 +73,8 @@ void transferDetector(StateArchive& archive, const SlamConfig&, SlamParts& parts
   archive(parts.range_factor, parts.is_fitted, parts.detector_range, parts.waiting);
   archive(parts.continuity, parts.standing);
   if (!(parts.range_factor > 1e-3 && parts.range_factor < 1e3)) StateArchive::fail("a detector of no range");
+  archive.require(areRising(parts.waiting, [](const Frame& frame) { return frame.stamp; }),
+                  "frames whose stamps do not rise");
 }
 
 void transferInput(StateArchive& archive, const SlamConfig& config, SlamParts& parts) {
@@ -86,6 +96,9 @@ void transferSubmaps(StateArchive& archive, const SlamConfig&, SlamParts& parts)
 void transferKeyframes(StateArchive& archive, const SlamConfig& config, SlamParts& parts) {
   const int classes = parts.closer ? parts.closer->classes().size() : 0;
   parts.map.transferKeyframes(archive, classes, config.back_end.keyframe.sighting_floor_m);
+  archive.require(parts.sessions.fits(parts.map), "sessions of other keyframes than there are");
+  archive.require(parts.prediction.T_map_keyframe.size() <= parts.map.keyframes().size(),
+                  "a prediction from other keyframes than there are");
 }
 
 void transferGraph(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
@@ -96,6 +109,9 @@ void transferGraph(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
 void transferMapper(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
   if (!parts.mapper) return;
   archive(*parts.mapper);
+  archive.require(parts.mapper->fits(parts.map.submaps().size()),
+                  "an open submap that does not follow the finished ones");
+  archive.require(parts.map.newestName() < parts.mapper->nextName(), "a name of a landmark that is still to be given");
   if (!archive.isReading()) return;
   parts.odometry = parts.mapper->odometryModel();
   parts.closer->setOdometry(parts.odometry);
@@ -123,9 +139,13 @@ void restore(const SlamState& state, const KeepReading& keep_reading, const Slam
       throw InputError(std::string("the section '") + section.name + "' has version " + std::to_string(found->version) +
                        ", this program reads version " + std::to_string(section.version));
     }
-    StateArchive archive(found->bytes, keep_reading);
-    section.transfer(archive, fitted, parts);
-    archive.requireEnd();
+    try {
+      StateArchive archive(found->bytes, keep_reading, classes.size());
+      section.transfer(archive, fitted, parts);
+      archive.requireEnd();
+    } catch (const std::exception& error) {
+      throw InputError(std::string("section '") + section.name + "': " + error.what());
+    }
     if (section.transfer != transferDetector || parts.range_factor == 1.0) continue;
     fitted = fittedTo(config, parts.range_factor);
     fitParts(fitted, classes, parts);

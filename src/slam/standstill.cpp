@@ -26,6 +26,7 @@ bool Standstill::add(const Pose& T_odom_base) {
 
 void Standstill::transfer(StateArchive& archive) {
   archive(T_odom_stand_, frames_);
+  archive.require(frames_ >= 0 && frames_ <= kFrames, "a number of frames from one place that there cannot be");
 }
 
 }  // namespace semantic_mht_slam

@@ -184,6 +184,35 @@ TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
   EXPECT_GT(refused, 100);
 }
 
+TEST_F(MapFileTest, AChunkThatClaimsMoreThanThereCanBeIsRefusedBeforeMemoryIsTaken) {
+  std::string content = readFile(path_);
+  const std::size_t size = content.find("size=", content.find("compression=bz2"));
+  ASSERT_NE(size, std::string::npos);
+  content.replace(size + 5, 4, "\x00\x00\x00\xF0", 4);
+  writeFileAtomically(path_, content);
+  expectInputError([&] { read(path_); }, {path_, "a chunk claims more"});
+}
+
+TEST_F(MapFileTest, SectionsOfMoreBytesThanThereCanBeAreRefused) {
+  SavedMap map = map_;
+  for (int i = 0; i < 100; ++i) map.state.sections.push_back({"zeros", 1, std::string(1U << 20U, '\0')});
+  writeMapFile(path_, map, config_, classes_);
+  expectInputError([&] { read(path_); }, {"section 'zeros' holds more"});
+}
+
+TEST_F(MapFileTest, AChangedNumberWithTheRightDigestIsRefusedByTheNameOfItsSection) {
+  SavedMap map = map_;
+  for (StateSection& section : map.state.sections) {
+    const std::string good = section.bytes;
+    section.bytes.back() = static_cast<char>(section.bytes.back() ^ 0x55);
+    section.bytes += "x";
+    writeMapFile(path_, map, config_, classes_);
+    expectInputError([&] { Slam(config_.slam, classes_, read(path_).state); },
+                     {path_, "section '" + section.name + "'"});
+    section.bytes = good;
+  }
+}
+
 TEST_F(MapFileTest, OnlyMapsAreReplaced) {
   const std::string other = folder_ / "other.bag";
   writeFileAtomically(other, "somebody's text");

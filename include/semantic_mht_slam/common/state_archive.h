@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -28,15 +29,21 @@ using KeepReading = std::function<bool()>;
 /// archive changes no value. Integers take as many bytes as they need, a double eight, a square matrix only what its
 /// form (zero, diagonal, symmetric, upper triangular) leaves open.
 ///
-/// Reading bytes that are no such state throws InputError; whoever reads gives what has been read so far up.
+/// Reading bytes that are no such state throws InputError; whoever reads gives what has been read so far up. Bytes may
+/// come from anybody: numbers are finite, each `transfer` requires of what it has read whatever the program relies on,
+/// and nothing makes a value that takes much more memory than the bytes it stands in.
 class StateArchive {
  public:
   /// Writes.
   StateArchive() = default;
 
   /// Reads; `bytes` must live as long as the archive.
-  explicit StateArchive(std::string_view bytes, KeepReading keep_reading = {})
-      : is_reading_(true), input_(bytes), keep_reading_(std::move(keep_reading)) {}
+  explicit StateArchive(std::string_view bytes, KeepReading keep_reading = {}, int classes = kAnyClasses)
+      : is_reading_(true),
+        input_(bytes),
+        keep_reading_(std::move(keep_reading)),
+        classes_(classes),
+        matrix_entries_(kMatrixEntries + bytes.size()) {}
 
   bool isReading() const { return is_reading_; }
 
@@ -46,6 +53,23 @@ class StateArchive {
   /// Throws InputError if reading is to be given up. Called for every list that is read; whoever does something long
   /// with what was read calls it meanwhile.
   void requireGoingOn() const;
+
+  /// Throws InputError if what was read breaks a rule; what is written is taken as it is.
+  void require(bool holds, const char* problem) const {
+    if (is_reading_ && !holds) fail(problem);
+  }
+
+  /// Throws InputError if a class that was read is not in the table.
+  void requireClass(int class_index) const;
+
+  /// Throws InputError if there are other numbers of classes than the table has.
+  void requireClassCount(std::ptrdiff_t count) const;
+
+  /// Throws InputError for what is no name of a landmark.
+  void requireName(std::uint64_t landmark) const;
+
+  /// Throws InputError for a stamp that ROS cannot write.
+  void requireStamp(std::int64_t stamp) const;
 
   /// Throws InputError unless everything was read.
   void requireEnd() const;
@@ -117,11 +141,15 @@ class StateArchive {
   void matrix(Matrix& values);
 
   static constexpr Eigen::Index kMaxSide = 4096;
+  static constexpr int kAnyClasses = -1;
+  static constexpr std::size_t kMatrixEntries = 1000000;  // that need no bytes: a matrix of zeros is short
 
   bool is_reading_ = false;
   std::string_view input_;
   KeepReading keep_reading_;
   std::string output_;
+  int classes_ = kAnyClasses;
+  std::size_t matrix_entries_ = 0;  ///< that matrices of variable size may still have
 };
 
 void transfer(StateArchive& archive, std::string& text);
@@ -192,6 +220,7 @@ void transfer(StateArchive& archive, std::map<Key, Value>& map) {
   for (std::size_t i = 0; i < count; ++i) {
     Key key{};
     archive(key);
+    if (!map.empty() && !(map.rbegin()->first < key)) StateArchive::fail("numbers do not rise");
     archive(map.emplace_hint(map.end(), std::piecewise_construct, std::forward_as_tuple(key), std::tuple<>())->second);
   }
 }
@@ -228,6 +257,8 @@ void StateArchive::resize(Matrix& values) {
   const bool is_possible = fits(rows, Matrix::RowsAtCompileTime, Matrix::MaxRowsAtCompileTime) &&
                            fits(cols, Matrix::ColsAtCompileTime, Matrix::MaxColsAtCompileTime);
   if (!is_possible) fail("a matrix has an impossible size");
+  if (static_cast<std::size_t>(rows * cols) > matrix_entries_) fail("its matrices are larger than it");
+  matrix_entries_ -= static_cast<std::size_t>(rows * cols);
   values.setZero(rows, cols);
 }
 

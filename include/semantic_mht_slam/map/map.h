@@ -86,6 +86,9 @@ class Map {
   void transferSubmaps(StateArchive& archive);
   void transferKeyframes(StateArchive& archive, int classes, double scene_floor_m);
 
+  /// The newest name of a landmark of the finished submaps.
+  LandmarkId newestName() const;
+
  private:
   /// Where a landmark was seen last.
   struct LastSeen {
@@ -99,6 +102,7 @@ class Map {
   const MixtureLandmark* newest(LandmarkId name) const;
   MixtureLandmark landmark(LandmarkId id, const LastSeen& seen) const;
   bool isKept(LandmarkId landmark) const;
+  void requireKeyframesOfSubmaps(const StateArchive& archive) const;
   void restore();
 
   double keep_prob_;

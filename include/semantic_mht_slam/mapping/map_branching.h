@@ -51,6 +51,9 @@ class MapBranching {
   /// The earlier map of the present submap, and when it is looked at next (see `StateArchive`).
   void transfer(StateArchive& archive);
 
+  /// How many landmarks the earlier map has.
+  int earlierLandmarks() const { return static_cast<int>(map_.landmarks.size()); }
+
  private:
   using Matches = std::map<LandmarkId, int>;  ///< earlier landmark of each landmark of the submap
 

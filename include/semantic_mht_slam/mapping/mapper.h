@@ -77,7 +77,14 @@ class Mapper {
   /// (see `StateArchive`).
   void transfer(StateArchive& archive);
 
+  /// Whether its submap follows so many finished ones.
+  bool fits(std::size_t finished_submaps) const;
+
+  /// The name that the next landmark gets.
+  LandmarkId nextName() const { return next_landmark_; }
+
  private:
+  void requireOpenSubmap(const StateArchive& archive) const;
   Pose T_submap_base(const Frame& frame) const { return T_odom_submap_.inverse() * frame.T_odom_base; }
   Eigen::Matrix3d detectorCov(const Detection& detection) const;
   Measurement makeMeasurement(const Detection& detection);

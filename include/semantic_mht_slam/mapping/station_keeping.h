@@ -7,6 +7,7 @@
 #include "semantic_mht_slam/mapping/fusion.h"
 #include "semantic_mht_slam/mapping/odometry_stretch.h"
 #include "semantic_mht_slam/models/detection.h"
+#include "semantic_mht_slam/models/frame.h"
 
 namespace semantic_mht_slam {
 
@@ -32,6 +33,9 @@ class StationKeeping {
 
   /// All that it keeps (see `StateArchive`).
   void transfer(StateArchive& archive);
+
+  /// Whether all that it keeps is of detections of these frames.
+  bool fits(const std::vector<Frame>& frames) const;
 
  private:
   struct Seen {

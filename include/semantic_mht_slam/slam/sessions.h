@@ -56,6 +56,9 @@ class Sessions {
 
   void transfer(StateArchive& archive);
 
+  /// Whether the keyframes that sessions begin with are those of a map, in their order.
+  bool fits(const Map& map) const;
+
  private:
   struct Session {
     std::size_t first_odometry = 0;

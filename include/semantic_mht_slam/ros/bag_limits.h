@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace semantic_mht_slam {
+
+/// What the content of a bag of that size may take in memory: compression does not make maps smaller by more.
+std::uint64_t mostContent(std::uint64_t file_size);
+
+/// Throws InputError unless the records of a bag lie inside the file and no chunk of it claims to hold more than
+/// `mostContent`: rosbag takes the memory that a chunk claims.
+void requireModestBag(const std::string& path);
+
+}  // namespace semantic_mht_slam

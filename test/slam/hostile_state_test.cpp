@@ -1,0 +1,82 @@
+// The state of a map file may come from anybody: whatever it holds, it is refused by the name of its section, or the
+// estimator goes on with it.
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/slam/slam.h"
+
+#include "support/square_drive.h"
+#include "support/state_mutation.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kDriven = 560;  // more than a round: with loop closures
+constexpr int kFurther = 25;
+constexpr int kUsed = 5;  // every so-manyth state that is taken is driven on with
+
+/// All that is asked of an estimator.
+void useFor(Slam& slam, const SquareDrive& drive, int frames) {
+  drive.feed(slam, kDriven, kDriven + frames);
+  slam.finish();
+  if (!slam.map().submaps().empty()) slam.localize();
+  drive.feed(slam, kDriven + frames, kDriven + frames + 3);
+  trajectoryOf(slam);
+  landmarksOf(slam);
+  slam.map().associations();
+  slam.parts().sessions.summary(slam.map());
+  slam.snapshot();
+}
+
+class HostileStateTest : public testing::TestWithParam<int> {
+ protected:
+  HostileStateTest() : drive_(7) {
+    Slam slam(config_, classes_);
+    drive_.feed(slam, 0, kDriven);
+    state_ = slam.snapshot();
+  }
+
+  const SlamConfig config_ = defaultsOf(Method::kDpmhm);
+  const ClassTable classes_ = makeStreetClasses();
+  SquareDrive drive_;
+  SlamState state_;
+};
+
+/// How many states are tried; more by SMHT_HOSTILE_STATES.
+int trials() {
+  const char* wanted = std::getenv("SMHT_HOSTILE_STATES");
+  return wanted == nullptr ? 200 : std::atoi(wanted);
+}
+
+TEST_P(HostileStateTest, WhatIsChangedIsRefusedByNameOrLivedWith) {
+  const auto section = static_cast<std::size_t>(GetParam());
+  const std::string name = state_.sections.at(section).name;
+  int loaded = 0;
+  int refused = 0;
+  for (int trial = 0; trial < trials(); ++trial) {
+    Rng rng = Rng(11).fork(name, static_cast<std::uint64_t>(trial));
+    SlamState state = state_;
+    state.sections[section].bytes = mutated(std::move(state.sections[section].bytes), rng);
+    try {
+      Slam slam(config_, classes_, state);
+      ++loaded;
+      if (loaded % kUsed != 1) continue;
+      EXPECT_NO_THROW(useFor(slam, drive_, kFurther)) << name << ", trial " << trial;
+    } catch (const InputError& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()).find("section '"), std::string::npos) << error.what();
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << name << ", trial " << trial << ": " << error.what();
+    }
+  }
+  EXPECT_GT(refused, trials() / 10);
+  RecordProperty("loaded", loaded);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sections, HostileStateTest, testing::Range(0, 6));
+
+}  // namespace
+}  // namespace semantic_mht_slam
