@@ -44,7 +44,9 @@ void describe(NodeConfig& config, Fields& fields) {
   fields.add("odom_frame", config.odom_frame, "Name of the odometry's frame; odometry in another frame is refused.");
   fields.add("base_frame", config.base_frame, "Name of the robot's base frame, the child frame of the odometry.");
   fields.add("queue_size", config.queue_size, "messages", {1, 1000000},
-             "Messages that may wait for the estimator; beyond that the oldest is dropped and counted.");
+             "Messages that may wait for the estimator; beyond that the oldest objects are dropped and counted.");
+  fields.add("max_delay", config.max_delay_s, "s", {0.1, 3600.0},
+             "Wall time that objects may wait for the estimator; older ones are dropped and counted.");
   fields.add("tf_timeout", config.tf_timeout_s, "s", {0.0, 60.0},
              "How long objects wait for the transform of their sensor; odometry never waits for them.");
   fields.add("trajectory_period", config.trajectory_period_s, "s", {0.01, 60.0},

@@ -209,13 +209,18 @@ void diagnoseObjects(const NodeStatus& now, const NodeStatus& before, Diagnostic
 
 void diagnoseQueue(const NodeStatus& now, const NodeStatus& before, DiagnosticStatusWrapper& status) {
   Finding finding(status);
-  finding.warn(now.queue_dropped > before.queue_dropped, "the queue is full: messages are dropped",
-               "play the bag slower, raise node/queue_size for bursts, or make frames cheaper "
-               "(fewer hypotheses, docs/parameters.md)");
+  finding.warn(now.queue_dropped_odometry > before.queue_dropped_odometry, "the queue is full: odometry is dropped",
+               "play the bag slower, or raise node/queue_size for bursts");
+  finding.warn(
+      now.queue_dropped_objects > before.queue_dropped_objects,
+      "the estimator is too slow: the oldest objects are dropped",
+      "play the bag slower, or make frames cheaper (fewer objects or hypotheses, docs/parameters.md); the pose "
+      "goes on by odometry");
   finding.otherwise(std::to_string(now.queue_length) + " of " + std::to_string(now.queue_capacity) + " wait");
   status.add("waiting", now.queue_length);
   status.add("capacity", now.queue_capacity);
-  status.add("dropped", now.queue_dropped);
+  status.add("dropped, odometry", now.queue_dropped_odometry);
+  status.add("dropped, objects", now.queue_dropped_objects);
 }
 
 namespace {

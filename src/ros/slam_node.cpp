@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/ros/slam_node.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -12,6 +13,14 @@ namespace {
 
 constexpr double kTrajectoryPause = 20.0;  // as long as it took, so that a long one takes no more than 5 % of the time
 constexpr std::uint32_t kSubscriberQueue = 1000;  // a burst until the callback moves it to the bounded queue
+
+/// Of the worker, after which the pose goes out without it.
+constexpr double kOverdue_s = 0.1;
+constexpr Stamp kFarAhead = 60LL * 1000000000LL;
+
+InputQueue::Clock::duration inWallTime(double seconds) {
+  return std::chrono::duration_cast<InputQueue::Clock::duration>(std::chrono::duration<double>(seconds));
+}
 
 double wallSeconds() {
   return ros::WallTime::now().toSec();
@@ -32,7 +41,7 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       objects_gate_(config.node, classes_, sensors_),
       is_localization_wanted_(config.node.mode == StartMode::kLocalization),
       is_loaded_(!config.node.map.empty()),
-      queue_(static_cast<std::size_t>(config.node.queue_size)) {
+      queue_(static_cast<std::size_t>(config.node.queue_size), inWallTime(config.node.max_delay_s)) {
   estimator_.method = nameOf(config.slam.method);
   if (is_loaded_) publisher_.showLoaded(*slam_, live_.get());
   noteStatus();
@@ -45,19 +54,25 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
         other_failures_.run("publishing the trajectory", [this] { publishSlowTopics(); });
       });
   diagnostics_ = std::make_unique<NodeDiagnostics>(handle_, private_handle, [this] { return status(); });
+  pose_timer_ = handle_.createWallTimer(ros::WallDuration(0.5 * kOverdue_s),
+                                        [this](const ros::WallTimerEvent&) { publishOverduePose(); });
   worker_ = std::thread([this] { work(); });
   slow_spinner_.start();
+  service_spinner_.start();
 }
 
 SlamNode::~SlamNode() {
+  is_closing_ = true;  // no service waits any more
+  queue_.close();
   odometry_subscriber_.shutdown();
   objects_subscriber_.shutdown();
   initial_pose_subscriber_.shutdown();
   services_.clear();
+  service_spinner_.stop();
+  pose_timer_.stop();
   diagnostics_.reset();
   slow_timer_.stop();
   slow_spinner_.stop();
-  queue_.close();
   worker_.join();
 }
 
@@ -66,7 +81,9 @@ void SlamNode::subscribe() {
   odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry>(
       "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); },
       ros::VoidConstPtr(), at_once);
-  initial_pose_subscriber_ = handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+  ros::NodeHandle service_handle(handle_);
+  service_handle.setCallbackQueue(&service_queue_);
+  initial_pose_subscriber_ = service_handle.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
       "initialpose", 1, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) {
         other_failures_.run("initialpose", [&] { expectAt(*message); });
       });
@@ -81,8 +98,28 @@ void SlamNode::receive(const nav_msgs::OdometryConstPtr& message) {
     const ros::Time now = ros::Time::now();
     odometry_monitor_.arrived(toStamp(message->header.stamp), now.isZero() ? std::nullopt : std::optional(toStamp(now)),
                               wallSeconds());
+    unhandled_.push_back({message, ros::WallTime::now()});
   }
   queue_.push(message);
+  publishOverduePose();
+}
+
+/// A pose by odometry alone if the worker has been behind for too long.
+void SlamNode::publishOverduePose() {
+  nav_msgs::OdometryConstPtr message;
+  {
+    const std::lock_guard<std::mutex> lock(status_mutex_);
+    const bool is_behind =
+        !unhandled_.empty() && (ros::WallTime::now() - unhandled_.front().since).toSec() > kOverdue_s;
+    if (!is_behind || !handled_odometry_) return;
+    message = unhandled_.back().message;
+    const Stamp ahead = toStamp(message->header.stamp) - *handled_odometry_;
+    if (ahead <= 0 || ahead > kFarAhead) return;  // a jump: the worker finds out
+  }
+  RefusedInput counted_by_worker;
+  const StampedPose T_odom_base{toStamp(message->header.stamp), fromMessage(message->pose.pose)};
+  if (!gate_.isUsable(*message, counted_by_worker) || !T_odom_base.T_world_base.isValid()) return;
+  publisher_.publishDeadReckoning(T_odom_base, live_.get());
 }
 
 void SlamNode::receive(const SemanticObjectArrayConstPtr& message) {
@@ -97,11 +134,22 @@ void SlamNode::work() {
   while (const std::optional<InputMessage> message = queue_.pop()) {
     const std::lock_guard<TicketMutex> lock(slam_mutex_);
     handleSafely(*message);
+    noteHandled(*message);
     other_failures_.run("looking at the estimator", [this] {
       noteStatus();
       warnOfDrops();
     });
   }
+}
+
+void SlamNode::noteHandled(const InputMessage& message) {
+  const auto* odometry = std::get_if<nav_msgs::OdometryConstPtr>(&message);
+  if (odometry == nullptr) return;
+  const std::lock_guard<std::mutex> lock(status_mutex_);
+  handled_odometry_ = latestStamp();
+  const auto is_it = [&](const UnhandledOdometry& waiting) { return waiting.message == *odometry; };
+  const auto handled = std::find_if(unhandled_.begin(), unhandled_.end(), is_it);  // those before it were dropped
+  if (handled != unhandled_.end()) unhandled_.erase(unhandled_.begin(), handled + 1);
 }
 
 void SlamNode::handleSafely(const InputMessage& message) {
@@ -133,9 +181,14 @@ void SlamNode::deadReckon(const nav_msgs::Odometry& message) {
 }
 
 void SlamNode::warnOfDrops() {
-  const std::size_t from_queue = queue_.dropped();
-  if (from_queue > 0) {
-    warnings_.warn(std::to_string(from_queue) + " messages dropped, the estimator is too slow (node/queue_size)");
+  const std::size_t odometry = queue_.droppedOdometry();
+  const std::size_t objects = queue_.droppedObjects();
+  if (odometry > 0) {
+    warnings_.warn(std::to_string(odometry) + " odometry messages dropped, the queue is full (node/queue_size)");
+  }
+  if (objects > 0) {
+    warnings_.warn(std::to_string(objects) +
+                   " messages of objects dropped, the estimator is too slow (node/max_delay)");
   }
   const InputNames names{odometry_subscriber_.getTopic(), objects_subscriber_.getTopic(), config_.node.base_frame};
   for (const std::string& line : droppedInput(estimator_.counters, estimator_.refused, names)) warnings_.warn(line);
@@ -156,6 +209,7 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
     ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latest), message.header.stamp.toSec(),
              keeps_map ? "looking for the place in the map" : "starting a new map");
     sensors_.forgetOdometry();
+    publisher_.forgetPose();
     keeps_map ? slam_->beginSession() : startAgain();
   }
   for (const nav_msgs::Odometry& sample : usable) process(sample);
@@ -174,7 +228,11 @@ void SlamNode::process(const nav_msgs::Odometry& message) {
   if (!slam_->addOdometry(T_odom_base)) return;
   sensors_.addOdometry(T_odom_base);
   const LiveConfig live = live_.get();
-  if (isLocated(slam_->mode())) publisher_.publishPose(*slam_, live);
+  if (isLocated(slam_->mode())) {
+    publisher_.publishPose(*slam_, live);
+  } else {
+    publisher_.forgetPose();
+  }
   publisher_.publishFrame(*slam_, live);
 }
 

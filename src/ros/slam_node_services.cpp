@@ -1,7 +1,13 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include <boost/make_shared.hpp>
+#include <ros/callback_queue.h>
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/conversions.h"
@@ -16,22 +22,52 @@ namespace {
 
 constexpr double kFarthest_m = 1e7;  // a quarter round the Earth
 
+/// Tells when its turn has come in a queue of callbacks.
+class Marker final : public ros::CallbackInterface {
+ public:
+  explicit Marker(std::shared_ptr<std::promise<void>> has_come) : has_come_(std::move(has_come)) {}
+
+  CallResult call() override {
+    has_come_->set_value();
+    return Success;
+  }
+
+ private:
+  std::shared_ptr<std::promise<void>> has_come_;
+};
+
 }  // namespace
 
 void SlamNode::advertiseServices() {
-  services_.push_back(handle_.advertiseService("finish_submap", &SlamNode::finishSubmap, this));
-  services_.push_back(handle_.advertiseService("reset", &SlamNode::reset, this));
-  services_.push_back(handle_.advertiseService("pause", &SlamNode::pause, this));
-  services_.push_back(handle_.advertiseService("resume", &SlamNode::resume, this));
-  services_.push_back(handle_.advertiseService("get_landmarks", &SlamNode::getLandmarks, this));
-  services_.push_back(handle_.advertiseService("save_map", &SlamNode::saveMap, this));
-  services_.push_back(handle_.advertiseService("load_map", &SlamNode::loadMap, this));
-  services_.push_back(handle_.advertiseService("set_mode", &SlamNode::setMode, this));
+  ros::NodeHandle handle(handle_);
+  handle.setCallbackQueue(&service_queue_);
+  services_.push_back(handle.advertiseService("finish_submap", &SlamNode::finishSubmap, this));
+  services_.push_back(handle.advertiseService("reset", &SlamNode::reset, this));
+  services_.push_back(handle.advertiseService("pause", &SlamNode::pause, this));
+  services_.push_back(handle.advertiseService("resume", &SlamNode::resume, this));
+  services_.push_back(handle.advertiseService("get_landmarks", &SlamNode::getLandmarks, this));
+  services_.push_back(handle.advertiseService("save_map", &SlamNode::saveMap, this));
+  services_.push_back(handle.advertiseService("load_map", &SlamNode::loadMap, this));
+  services_.push_back(handle.advertiseService("set_mode", &SlamNode::setMode, this));
 }
 
 std::unique_lock<TicketMutex> SlamNode::lockCaughtUp() {
+  waitForSubscribers();
   queue_.waitUntilHandled([] { return ros::ok(); });
   return std::unique_lock<TicketMutex>(slam_mutex_);
+}
+
+/// Until the messages that the node had received before the call are in the queue. They are called in their order: what
+/// is put behind them comes after them.
+void SlamNode::waitForSubscribers() {
+  const auto has_come = std::make_shared<std::promise<void>>();
+  ros::CallbackQueueInterface* own = handle_.getCallbackQueue();
+  ros::CallbackQueueInterface& queue = own != nullptr ? *own : *ros::getGlobalCallbackQueue();
+  queue.addCallback(boost::make_shared<Marker>(has_come));
+  std::future<void> coming = has_come->get_future();
+  while (coming.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+    if (is_closing_ || !ros::ok()) return;
+  }
 }
 
 template <class Response, class Body>
@@ -130,11 +166,12 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
   return answer("load_map", response, [&] {
     std::unique_ptr<Slam> other;  // the loaded one, and then the one before
     bool has_same_parameters = true;
+    const KeepReading keep_reading = [this] { return ros::ok() && !is_closing_; };
     try {
       const std::string path = mapPath(request.path, config_.node.map_folder);
-      const LoadedMap map = readMapFile(path, config_, classes_, ros::ok);
+      const LoadedMap map = readMapFile(path, config_, classes_, keep_reading);
       has_same_parameters = map.has_same_parameters;
-      other = std::make_unique<Slam>(config_.slam, classes_, map.state, ros::ok);
+      other = std::make_unique<Slam>(config_.slam, classes_, map.state, keep_reading);
     } catch (const InputError& error) {
       response.message = std::string(error.what()) + "; the running map stays";
       return;
@@ -235,7 +272,8 @@ NodeStatus SlamNode::status() {
   status.clock = clockStatus();
   status.queue_length = queue_.length();
   status.queue_capacity = static_cast<std::size_t>(config_.node.queue_size);
-  status.queue_dropped = queue_.dropped();
+  status.queue_dropped_odometry = queue_.droppedOdometry();
+  status.queue_dropped_objects = queue_.droppedObjects();
   status.input_failures = input_failures_.status();
   status.other_failures = other_failures_.status();
   status.resident_mb = residentMegabytes();

@@ -55,6 +55,7 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
       shown_(map_) {}
 
 void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
+  const std::lock_guard<std::mutex> lock(pose_mutex_);
   const StampedPose latest = *latestPoseOf(slam);
   T_map_odom_ = slam.T_map_odom();
   odometry_model_ = slam.parts().odometry;
@@ -67,6 +68,7 @@ void SlamPublisher::publishPose(const Slam& slam, const LiveConfig& live) {
 }
 
 void SlamPublisher::publishDeadReckoning(const StampedPose& T_odom_base, const LiveConfig& live) {
+  const std::lock_guard<std::mutex> lock(pose_mutex_);
   if (!T_map_odom_) return;
   const Pose T_map_base = *T_map_odom_ * T_odom_base.T_world_base;
   latest_ = reckoned(latest_, latest_.T_world_base.inverse() * T_map_base, odometry_model_);
@@ -74,8 +76,17 @@ void SlamPublisher::publishDeadReckoning(const StampedPose& T_odom_base, const L
   sendPose(T_odom_base.stamp, T_odom_base.T_world_base, live);
 }
 
+void SlamPublisher::forgetPose() {
+  const std::lock_guard<std::mutex> lock(pose_mutex_);
+  correction_.reset();
+  T_map_odom_.reset();
+  pose_stamp_.reset();
+}
+
 /// The newest pose.
 void SlamPublisher::sendPose(Stamp stamp, const Pose& T_odom_base, const LiveConfig& live) {
+  if (pose_stamp_ && stamp <= *pose_stamp_) return;  // went out before, by odometry alone
+  pose_stamp_ = stamp;
   const Pose followed = correction_.follow(*T_map_odom_, T_odom_base, stamp, live);
   if (config_.publishes_tf) {
     transform_broadcaster_.sendTransform(toTransform({stamp, followed}, config_.map_frame, config_.odom_frame));
@@ -155,8 +166,7 @@ std::vector<Pose> SlamPublisher::odometry() const {
 }
 
 void SlamPublisher::startAgain(const Slam& slam) {
-  correction_.reset();
-  T_map_odom_.reset();
+  forgetPose();
   published_frame_.reset();
   published_submaps_ = 0;
   closures_ = {};

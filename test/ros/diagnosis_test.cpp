@@ -56,10 +56,10 @@ TEST_P(DiagnosisTest, WhatWasDroppedLongAgoIsNoFaultAnyMore) {
   NodeStatus status = wellStatus();
   const EstimatorStatus fresh = status.estimator;
   GetParam().cause(status);
-  const bool is_about_drops = status.estimator.counters.odometry_invalid > fresh.counters.odometry_invalid ||
-                              status.queue_dropped > 0 || status.estimator.graph.failures > 0 ||
-                              !status.estimator.refused.unknown_classes.empty() ||
-                              status.estimator.refused.objects_without_transform > 0;
+  const bool is_about_drops =
+      status.estimator.counters.odometry_invalid > fresh.counters.odometry_invalid ||
+      status.queue_dropped_odometry > 0 || status.queue_dropped_objects > 0 || status.estimator.graph.failures > 0 ||
+      !status.estimator.refused.unknown_classes.empty() || status.estimator.refused.objects_without_transform > 0;
   if (!is_about_drops) return;
   DiagnosticStatusWrapper later;
   GetParam().diagnose(status, status, later);
@@ -209,7 +209,17 @@ const std::vector<Fault> kFaults = {
        s.estimator.graph = {3, "the solution is not finite"};
      },
      {"pose graph", "not finite"}},
-    {"FullQueue", diagnoseQueue, DiagnosticStatus::WARN, [](NodeStatus& s) { s.queue_dropped = 5; }, {"full"}},
+    {"FullQueue", diagnoseQueue, DiagnosticStatus::WARN, [](NodeStatus& s) { s.queue_dropped_odometry = 5; }, {"full"}},
+    {"SlowEstimator",
+     diagnoseQueue,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.queue_dropped_objects = 5; },
+     {"too slow", "oldest objects"}},
+    {"ObjectsInTheMap",
+     diagnoseObjects,
+     DiagnosticStatus::ERROR,
+     [](NodeStatus& s) { s.estimator.refused.objects_in_map_frame = 5; },
+     {"frame of the map"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Faults, DiagnosisTest, ::testing::ValuesIn(kFaults),

@@ -1,3 +1,4 @@
+#include <atomic>
 #include <filesystem>
 #include <future>
 #include <mutex>
@@ -210,6 +211,30 @@ TEST(MapServicesTest, PausedNodeUsesNoObjectsAndItsPoseGoesOn) {
   ASSERT_TRUE(driving.feed(100, 160, 120));
   EXPECT_EQ(driving.finalTrajectory(160).size(), 160U);
   EXPECT_EQ(driving.node.value("estimator", "mode"), "mapping");
+}
+
+TEST(MapServicesTest, NothingIsLostWhileAMapIsLoaded) {
+  const TemporaryFolder folder;
+  const std::string path = writeMap(folder / "heavy.bag", 100, 20);
+  DrivingNode driving("listening", {"_node/queue_size:=100000"});
+  ASSERT_TRUE(driving.isReady());
+  ros::ServiceClient client = driving.node.handle().serviceClient<LoadMap>("load_map");
+  ASSERT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+  std::atomic<bool> is_loaded{false};
+  auto loading = std::async(std::launch::async, [&] {
+    LoadMap load;
+    load.request.path = path;
+    const bool is_answered = client.call(load) && load.response.success;
+    is_loaded = true;
+    return is_answered;
+  });
+  int sent = 0;
+  for (; sent < 3000 || !is_loaded; ++sent) {
+    driving.node.sendOdometry(0.001 * sent);
+    ros::WallDuration(0.0005).sleep();
+  }
+  EXPECT_TRUE(loading.get());
+  EXPECT_TRUE(driving.node.comesToSay("odometry", "messages", std::to_string(sent)));
 }
 
 TEST(MapServicesTest, InterruptEndsTheNodeWithinTwoSecondsWhileItLoads) {

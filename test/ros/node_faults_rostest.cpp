@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <atomic>
+#include <map>
+#include <mutex>
 
 #include <dynamic_reconfigure/Reconfigure.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
@@ -25,12 +28,50 @@ TEST(NodeFaultsTest, QueueThatIsFullDropsAndSaysSoAndThePoseGoesOn) {
     node.sendOdometry(0.01 * i);
     node.sendObjects(0.01 * i);
   }
-  EXPECT_TRUE(node.comesToReport("queue", "the queue is full"));
-  EXPECT_GT(std::stoul("0" + node.value("queue", "dropped")), 0U);
+  EXPECT_TRUE(waitFor([&] {
+    return std::stoul("0" + node.value("queue", "dropped, odometry")) > 0 &&
+           std::stoul("0" + node.value("queue", "dropped, objects")) > 0;
+  }));
+  EXPECT_EQ(node.status("queue").level, diagnostic_msgs::DiagnosticStatus::WARN);
   ros::WallDuration(1.0).sleep();
   node.sendOdometry(31.0);
   EXPECT_TRUE(node.comesToSay("odometry", "newest stamp (s)", "1031.000"));
   EXPECT_TRUE(waitFor([&] { return node.value("queue", "waiting") == "0"; }));
+}
+
+TEST(NodeFaultsTest, MoreObjectsThanTheEstimatorCanTakeDelayNoPoseAndTheOldestAreDropped) {
+  RunningNode node("overload", {"_node/max_delay:=1.0"});
+  std::mutex mutex;
+  std::map<std::uint64_t, double> came_s;  // wall time of each pose, by stamp
+  const auto subscriber = node.handle().subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+      "pose", 1000,
+      boost::function<void(const geometry_msgs::PoseWithCovarianceStampedConstPtr&)>(
+          [&](const geometry_msgs::PoseWithCovarianceStampedConstPtr& pose) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            came_s.emplace(pose->header.stamp.toNSec(), ros::WallTime::now().toSec());
+          }));
+  ASSERT_TRUE(node.isReady());
+  ASSERT_TRUE(waitFor([&] { return subscriber.getNumPublishers() > 0; }));
+  std::map<std::uint64_t, double> sent_s;
+  ros::WallRate rate(50.0);
+  for (int i = 0; i < 400; ++i) {
+    sent_s[toRosTime(stampFromSeconds(RunningNode::kBegin_s + 0.02 * i)).toNSec()] = ros::WallTime::now().toSec();
+    node.sendOdometry(0.02 * i);
+    if (i % 5 == 0) node.sendObjects(0.02 * i, RunningNode::kPole, 2000);
+    rate.sleep();
+  }
+  EXPECT_GT(std::stoul("0" + node.value("queue", "dropped, objects")), 0U) << "the load was none";
+  EXPECT_EQ(node.value("queue", "dropped, odometry"), "0");
+  ros::WallDuration(0.5).sleep();
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::vector<double> late_s;  // of the newest pose at each moment: one that was overtaken is not missed
+  for (const auto& [stamp, time_s] : sent_s) {
+    const auto pose = std::find_if(came_s.lower_bound(stamp), came_s.end(), [](const auto&) { return true; });
+    late_s.push_back(pose == came_s.end() ? 1e3 : pose->second - time_s);
+  }
+  std::sort(late_s.begin(), late_s.end());
+  EXPECT_LT(late_s[late_s.size() / 2], 0.2);
+  EXPECT_LT(late_s.back(), 1.0) << "on a busy machine; alone 0.2 s";
 }
 
 TEST(NodeFaultsTest, DetectionsLateByTwoSecondsAreAllUsed) {

@@ -19,6 +19,7 @@ struct NodeConfig {
   std::string odom_frame = "odom";
   std::string base_frame = "base_link";
   int queue_size = 2000;
+  double max_delay_s = 10.0;
   double tf_timeout_s = 2.0;
   double trajectory_period_s = 0.5;
   int trajectory_poses = 20000;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -17,10 +19,15 @@ namespace semantic_mht_slam {
 /// A message for the estimator.
 using InputMessage = std::variant<nav_msgs::OdometryConstPtr, SemanticObjectArrayConstPtr>;
 
-/// Bounded queue between the subscribers and the worker. When it is full the oldest message is dropped and counted.
+/// Bounded queue between the subscribers and the worker. What is too much for the worker is dropped and counted:
+/// objects that have waited for too long, and when the queue is full the oldest objects, or the oldest odometry if none
+/// waits.
 class InputQueue {
  public:
-  explicit InputQueue(std::size_t capacity) : capacity_(capacity) {}
+  using Clock = std::chrono::steady_clock;
+
+  /// Objects wait for `max_wait` at most.
+  InputQueue(std::size_t capacity, Clock::duration max_wait) : capacity_(capacity), max_wait_(max_wait) {}
 
   void push(InputMessage message);
 
@@ -37,17 +44,29 @@ class InputQueue {
   /// Messages that wait now.
   std::size_t length() const;
 
-  std::size_t dropped() const;
+  std::size_t droppedOdometry() const;
+  std::size_t droppedObjects() const;
 
  private:
+  struct Waiting {
+    InputMessage message;
+    Clock::time_point since;
+    std::uint64_t number;  ///< in the order of arrival
+  };
+
+  static bool isObjects(const Waiting& waiting);
+  void makeRoom();
+  void dropOverdue();
+
   const std::size_t capacity_;
+  const Clock::duration max_wait_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<InputMessage> messages_;
-  std::size_t pushed_ = 0;
-  std::size_t dropped_ = 0;
-  std::size_t taken_ = 0;
-  std::size_t handled_ = 0;
+  std::deque<Waiting> messages_;
+  std::uint64_t next_number_ = 0;
+  std::optional<std::uint64_t> in_hand_;  ///< that the worker handles
+  std::size_t dropped_odometry_ = 0;
+  std::size_t dropped_objects_ = 0;
   bool is_closed_ = false;
 };
 

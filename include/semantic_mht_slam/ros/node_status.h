@@ -68,7 +68,8 @@ struct NodeStatus {
   EstimatorStatus estimator;
   std::size_t queue_length = 0;
   std::size_t queue_capacity = 0;
-  std::size_t queue_dropped = 0;
+  std::size_t queue_dropped_odometry = 0;
+  std::size_t queue_dropped_objects = 0;
   FailureStatus input_failures;  ///< of the worker, which handles the input
   FailureStatus other_failures;  ///< of services, timers and `initialpose`
   FrameTimes frame_times;

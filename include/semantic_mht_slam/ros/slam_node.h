@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -36,10 +38,11 @@ namespace semantic_mht_slam {
 
 /// The ROS node, in a process of its own or in that of a nodelet manager. Subscribers put messages into a bounded
 /// queue; one worker thread owns the estimator, takes them out and publishes; a wall timer publishes `trajectory` when
-/// it has changed, so that the last one goes out even if the clock of a replay has stopped. Services come
-/// after the messages that the node received before the request, and change the estimator between two messages. A
-/// failure that nobody foresaw drops its message; after three in a row the estimator stands still and the pose goes on
-/// by odometry alone, until `reset` or `load_map`.
+/// it has changed, so that the last one goes out even if the clock of a replay has stopped. Services have a thread,
+/// too, so that messages keep coming while a map is saved or loaded; they come after the messages that the node
+/// received before the request, and change the estimator between two messages. Odometry that the worker does not come
+/// to goes out as a pose by odometry alone. A failure that nobody foresaw drops its message; after three in a row the
+/// estimator stands still and the pose goes on by odometry alone, until `reset` or `load_map`.
 class SlamNode {
  public:
   /// `slam`: of `startingSlam`.
@@ -53,6 +56,12 @@ class SlamNode {
   SlamNode& operator=(const SlamNode&) = delete;
 
  private:
+  /// Odometry that the worker has not come to.
+  struct UnhandledOdometry {
+    nav_msgs::OdometryConstPtr message;
+    ros::WallTime since;
+  };
+
   void receive(const nav_msgs::OdometryConstPtr& message);
   void receive(const SemanticObjectArrayConstPtr& message);
   void subscribe();
@@ -61,6 +70,7 @@ class SlamNode {
   // The worker.
   void work();
   void handleSafely(const InputMessage& message);
+  void noteHandled(const InputMessage& message);
   void handleTimed(const InputMessage& message);
   void deadReckon(const nav_msgs::Odometry& message);
   void warnOfDrops();
@@ -75,10 +85,14 @@ class SlamNode {
   // With the estimator locked.
   void startAgain();
 
-  // Services, timers and diagnostics, in a spinner thread.
+  // Subscribers, diagnostics and the timer of overdue poses, in the spinner thread.
+  void publishOverduePose();
+
+  // Services and `initialpose`, in a thread of their own.
 
   /// The estimator for a service: it has seen every message that the node received before the request.
   std::unique_lock<TicketMutex> lockCaughtUp();
+  void waitForSubscribers();
   /// Lets `body` answer; a failure becomes the answer. Always true: the service was called.
   template <class Response, class Body>
   bool answer(const std::string& service, Response& response, const Body& body);
@@ -117,6 +131,8 @@ class SlamNode {
 
   // Guarded by `status_mutex_`, which is never held for long: diagnostics go out however busy the estimator is.
   std::mutex status_mutex_;
+  std::deque<UnhandledOdometry> unhandled_;
+  std::optional<Stamp> handled_odometry_;  ///< the newest that the worker has used
   EstimatorStatus noted_estimator_;
   FrameTimer frame_timer_;
   TopicMonitor odometry_monitor_;
@@ -138,6 +154,10 @@ class SlamNode {
   ros::Subscriber objects_subscriber_;
   ros::Subscriber initial_pose_subscriber_;
   std::vector<ros::ServiceServer> services_;
+  ros::CallbackQueue service_queue_;
+  ros::AsyncSpinner service_spinner_{1, &service_queue_};
+  std::atomic<bool> is_closing_{false};
+  ros::WallTimer pose_timer_;
   ros::CallbackQueue slow_queue_;  ///< of a thread of its own, so that no message waits for a long trajectory
   ros::AsyncSpinner slow_spinner_{1, &slow_queue_};
   ros::WallTimer slow_timer_;

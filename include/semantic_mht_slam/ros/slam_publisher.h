@@ -29,9 +29,12 @@ class SlamPublisher {
   /// the policy holds back.
   void publishPose(const Slam& slam, const LiveConfig& live);
 
-  /// tf and pose of an odometry sample with the newest correction that was published: the estimator is not asked. Does
-  /// nothing before the first pose of a map.
+  /// tf and pose of an odometry sample with the newest correction that was published: the estimator is not asked, and
+  /// may be at work in another thread. Does nothing before the first pose of a map, or while the pose is unknown.
   void publishDeadReckoning(const StampedPose& T_odom_base, const LiveConfig& live);
+
+  /// The pose is not known from now on until it is published again; its stamps may be earlier then.
+  void forgetPose();
 
   /// Objects and hypotheses of the newest frame if it is a new one, and the map if a submap was finished.
   void publishFrame(const Slam& slam, const LiveConfig& live);
@@ -75,6 +78,8 @@ class SlamPublisher {
   void publishProvisional(const Slam& slam, const LiveConfig& live);
   void sendPose(Stamp stamp, const Pose& T_odom_base, const LiveConfig& live);
 
+  std::mutex pose_mutex_;  ///< guards what `sendPose` needs
+
   const NodeConfig config_;
   const ClassTable classes_;
   tf2_ros::TransformBroadcaster transform_broadcaster_;
@@ -89,7 +94,8 @@ class SlamPublisher {
   ros::Publisher hypotheses_publisher_;
   ros::Publisher map_publisher_;
   CorrectionFollower correction_;
-  std::optional<Pose> T_map_odom_;  ///< of the newest pose
+  std::optional<Pose> T_map_odom_;   ///< of the newest pose
+  std::optional<Stamp> pose_stamp_;  ///< of the newest pose; none goes out that is not newer
   UncertainPose latest_;
   OdometryModel odometry_model_;
   std::optional<Stamp> published_frame_;
