@@ -9,11 +9,11 @@ PACKAGES=(
   build-essential cmake git ccache
   ros-core ros-core-dev rosbash librostest-dev python3-rostest
   libtf2-ros-dev libtf2-msgs-dev tf2-tools python3-tf2-ros
-  librosbag-dev python3-rosbag libvisualization-msgs-dev libnav-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev
+  librosbag-dev python3-rosbag libtopic-tools-dev libvisualization-msgs-dev libnav-msgs-dev libsensor-msgs-dev libgeometry-msgs-dev
   python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-std-msgs python3-std-srvs
   python3-visualization-msgs python3-tf2-msgs python3-genpy python3-rospkg python3-rospy python3-rosunit python3-yaml
   python3-setuptools
-  libmessage-filters-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev
+  libtopic-tools-dev libmessage-filters-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev
   libdiagnostic-msgs-dev libdiagnostic-updater-dev python3-diagnostic-msgs libstd-srvs-dev libroslib-dev
   libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure
   libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev

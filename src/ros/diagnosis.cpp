@@ -5,6 +5,8 @@
 
 #include "semantic_mht_slam/common/text.h"
 
+#include "finding.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -21,32 +23,6 @@ constexpr double kClockOffset_s = 10.0;  // of stamps against the clock: more th
 std::string seconds(double value_s) {
   return formatFixed(value_s, 1) + " s";
 }
-
-/// Collects findings: the first one becomes the message.
-class Finding {
- public:
-  explicit Finding(DiagnosticStatusWrapper& status) : status_(status) {}
-
-  void report(bool is_wrong, unsigned char level, const std::string& message, const std::string& fix) {
-    if (!is_wrong || is_found_) return;
-    is_found_ = true;
-    status_.summary(level, message);
-    status_.add(kFixKey, fix);
-  }
-  void error(bool is_wrong, const std::string& message, const std::string& fix) {
-    report(is_wrong, DiagnosticStatus::ERROR, message, fix);
-  }
-  void warn(bool is_wrong, const std::string& message, const std::string& fix) {
-    report(is_wrong, DiagnosticStatus::WARN, message, fix);
-  }
-  void otherwise(const std::string& message) {
-    if (!is_found_) status_.summary(DiagnosticStatus::OK, message);
-  }
-
- private:
-  DiagnosticStatusWrapper& status_;
-  bool is_found_ = false;
-};
 
 void addTopic(const TopicStatus& topic, DiagnosticStatusWrapper& status) {
   status.add("topic", topic.topic);
@@ -75,6 +51,11 @@ void addUnknownClasses(const EstimatorStatus& estimator, DiagnosticStatusWrapper
   }
 }
 
+/// A bag that is over is no fault, nor is the silence after it.
+bool hasEnded(const NodeStatus& now) {
+  return now.clock.use_sim_time && now.clock.still_s > kClockSilence_s && now.odometry.received > 0;
+}
+
 /// How far the newest objects' stamp lies from the newest odometry, in words.
 std::string apart(const TopicStatus& objects) {
   if (!objects.delay_s) return {};
@@ -89,14 +70,14 @@ void diagnoseClock(const NodeStatus& now, const NodeStatus&, DiagnosticStatusWra
   Finding finding(status);
   finding.error(clock.use_sim_time && !clock.time_s, "use_sim_time is true and nothing comes on /clock",
                 "play the bag with --clock, or run 'rosparam set use_sim_time false' and start the node again");
-  finding.warn(clock.use_sim_time && clock.still_s > kClockSilence_s,
-               "/clock stands still for " + seconds(clock.still_s), "is the player paused, or the bag over?");
   finding.warn(!clock.use_sim_time && std::abs(off_s) > kClockOffset_s,
                now.odometry.topic + " is stamped " + seconds(std::abs(off_s)) + (off_s > 0.0 ? " before" : " after") +
                    " the time of this machine",
                "for a bag: 'rosparam set use_sim_time true' before the nodes start, and play it with --clock; live: "
                "set the clocks of the machines (chrony, ntp)");
-  finding.otherwise(clock.use_sim_time ? "/clock runs" : "time of this machine");
+  finding.otherwise(hasEnded(now) ? "/clock stands still for " + seconds(clock.still_s) + ": paused, or the bag is over"
+                    : clock.use_sim_time ? "/clock runs"
+                                         : "time of this machine");
   status.add("use_sim_time", clock.use_sim_time ? "true" : "false");
   if (clock.time_s) status.add("time (s)", formatFixed(*clock.time_s, 3));
 }
@@ -109,7 +90,7 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   finding.error(odometry.received == 0 && now.running_s > kStart_s, "no odometry on " + odometry.topic,
                 odometry.publishers == 0 ? "nobody publishes it: start the odometry, or remap odometry:=/its/topic"
                                          : "its publisher sends nothing: look at what it waits for");
-  finding.error(odometry.silent_s.value_or(0.0) > kOdometrySilence_s,
+  finding.error(odometry.silent_s.value_or(0.0) > kOdometrySilence_s && !hasEnded(now),
                 "no odometry on " + odometry.topic + " for " + seconds(odometry.silent_s.value_or(0.0)),
                 "look at the odometry's node, or at the player if this is a bag");
   finding.error(now.estimator.refused.odometry_wrong_frames > before.estimator.refused.odometry_wrong_frames,
@@ -125,6 +106,12 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   finding.warn(now.estimator.refused.odometry_stamp_outliers > before.estimator.refused.odometry_stamp_outliers,
                odometry.topic + " holds single stamps far from the others: dropped",
                "look at the clock of the odometry's machine, and whether a second node publishes on the topic");
+  finding.warn(now.estimator.odometry_jumps > before.estimator.odometry_jumps,
+               odometry.topic + " jumps: it goes on as another odometry, which looks for itself in the map",
+               "look at what sets the odometry back or restarts it; it should be smooth");
+  finding.warn(now.estimator.oddities.isOdometryInMillimetres(),
+               odometry.topic + " moves at " + formatFixed(now.estimator.oddities.speed_m_per_s, 0) + " m/s",
+               "give poses in metres, not in millimetres, and stamps in the time of the measurement");
   finding.warn(counters.odometry_not_rising > before.estimator.counters.odometry_not_rising,
                odometry.topic + " holds stamps that do not rise",
                "let one node alone publish it, with a new header.stamp in every message");
@@ -138,6 +125,7 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   status.add("dropped, stamp far from the others", now.estimator.refused.odometry_stamp_outliers);
   status.add("dropped, invalid", counters.odometry_invalid);
   status.add("dropped, stamp does not rise", counters.odometry_not_rising);
+  status.add("jumps", now.estimator.odometry_jumps);
 }
 
 namespace {
@@ -173,13 +161,23 @@ void findObjectsFault(const NodeStatus& now, const NodeStatus& before, Finding& 
   finding.warn(counters.detections_invalid > old.detections_invalid,
                objects.topic + " holds objects whose position, covariance, score or size cannot be used",
                "positions must be finite, covariances positive definite or all zero, scores in [0, 1] or -1");
+  const InputOddities& oddities = estimator.oddities;
+  finding.warn(oddities.areObjectsInMillimetres(),
+               objects.topic + " holds objects " + formatFixed(oddities.range_m, 0) + " m away, half of them farther",
+               "give positions in metres, not in millimetres");
+  finding.warn(oddities.areObjectsOnEnd(),
+               objects.topic + " holds objects " + formatFixed(oddities.height_m, 0) + " m above '" + now.base_frame +
+                   "', higher than far",
+               "camera axes (z ahead) need a frame that says so: header.frame_id of an optical frame that tf knows");
+  finding.warn(oddities.areObjectsInWorld(), objects.topic + " holds objects that move along with the robot",
+               "they seem to be in world coordinates: set header.frame_id to the frame that they are given in");
   finding.warn(counters.frames_not_rising > old.frames_not_rising, objects.topic + " holds stamps that do not rise",
                "let one detector alone publish it, in the order of its stamps");
   finding.warn(counters.frames_in_odometry_gap > old.frames_in_odometry_gap,
                objects.topic + " is stamped within a gap of the odometry", "odometry must not pause: see odometry");
   finding.warn(counters.frames_waiting_too_long > old.frames_waiting_too_long,
                objects.topic + " waits for odometry in vain", "see odometry");
-  finding.warn(objects.silent_s.value_or(0.0) > kObjectsSilence_s,
+  finding.warn(objects.silent_s.value_or(0.0) > kObjectsSilence_s && !hasEnded(now),
                "no objects on " + objects.topic + " for " + seconds(objects.silent_s.value_or(0.0)),
                "look at the detector; the pose goes on by odometry alone");
 }
@@ -221,54 +219,6 @@ void diagnoseQueue(const NodeStatus& now, const NodeStatus& before, DiagnosticSt
   status.add("capacity", now.queue_capacity);
   status.add("dropped, odometry", now.queue_dropped_odometry);
   status.add("dropped, objects", now.queue_dropped_objects);
-}
-
-namespace {
-
-void findEstimatorFault(const NodeStatus& now, const NodeStatus& before, Finding& finding) {
-  const FailureStatus& input = now.input_failures;
-  const FailureStatus& others = now.other_failures;
-  const std::string report = "keep a bag of the input and report it (docs/troubleshooting.md)";
-  finding.error(input.isLasting(), "the estimator failed three times in a row and stands still: " + input.newest,
-                "the pose goes on by odometry alone; call reset or load_map, and " + report);
-  finding.error(input.count > before.input_failures.count, "an unexpected failure dropped a message: " + input.newest,
-                report + "; reset begins anew if it goes on");
-  finding.error(others.count > before.other_failures.count, "unexpected failure of " + others.newest, report);
-  finding.warn(now.estimator.is_lost, "lost: no pose goes out until the vehicle has found itself in the map",
-               "drive on where the map was made, or say where it is on initialpose");
-  finding.warn(now.estimator.initial_poses_refused > before.estimator.initial_poses_refused,
-               "initialpose is refused: " + now.estimator.initial_pose_problem,
-               "set localization by set_mode first, and give a finite pose and covariance in the map frame");
-  finding.warn(now.estimator.graph.failures > before.estimator.graph.failures,
-               "the pose graph cannot be solved (" + now.estimator.graph.newest_failure + "): the map stays as it was",
-               "look for jumps of the odometry and for objects at absurd distances; 'reset' begins a new map");
-}
-
-}  // namespace
-
-void diagnoseEstimator(const NodeStatus& now, const NodeStatus& before, DiagnosticStatusWrapper& status) {
-  const EstimatorStatus& estimator = now.estimator;
-  Finding finding(status);
-  findEstimatorFault(now, before, finding);
-  finding.otherwise(std::to_string(estimator.hypotheses) + " hypotheses, " + std::to_string(estimator.landmarks) +
-                    " landmarks, " + formatFixed(now.frame_times.mean_ms, 1) + " ms a frame");
-  status.add("method", estimator.method);
-  status.add("mode", estimator.mode);
-  status.add("hypotheses", estimator.hypotheses);
-  status.add("landmarks", estimator.landmarks);
-  status.add("submaps", estimator.submaps);
-  status.add("loops", estimator.loops);
-  status.add("failed solutions of the pose graph", estimator.graph.failures);
-  status.add("maps begun", estimator.resets + 1);
-  status.add("initial poses refused", estimator.initial_poses_refused);
-  status.add("unexpected failures of the input", now.input_failures.count);
-  status.add("unexpected failures of services and timers", now.other_failures.count);
-  status.add("objects dropped while it stands still", estimator.objects_while_failing);
-  status.add("objects not used while paused", estimator.objects_while_paused);
-  status.add("frame time, mean (ms)", formatFixed(now.frame_times.mean_ms, 3));
-  status.add("frame time, p99 (ms)", formatFixed(now.frame_times.p99_ms, 3));
-  status.add("frame time, max (ms)", formatFixed(now.frame_times.max_ms, 3));
-  status.add("resident memory (MB)", formatFixed(now.resident_mb, 1));
 }
 
 }  // namespace semantic_mht_slam

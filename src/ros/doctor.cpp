@@ -1,5 +1,9 @@
 #include "semantic_mht_slam/ros/doctor.h"
 
+#include <nav_msgs/Odometry.h>
+
+#include <semantic_mht_slam/SemanticObjectArray.h>
+
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/ros/diagnosis.h"
 
@@ -53,7 +57,9 @@ std::optional<Prescription> timeProblem(const SystemObservation& system) {
     return Prescription{"/clock is published and use_sim_time is false",
                         "run 'rosparam set use_sim_time true' and start the nodes again, or play without --clock"};
   }
-  if (system.use_sim_time && system.clock_publishers == 0) {
+  const DiagnosticStatus* odometry = findPart(system, "odometry");
+  const bool has_run = odometry != nullptr && valueOf(*odometry, "messages") != "0";  // a bag that is over
+  if (system.use_sim_time && system.clock_publishers == 0 && !has_run) {
     return Prescription{"use_sim_time is true and nobody publishes /clock",
                         "play the bag with --clock; live: 'rosparam set use_sim_time false' and start the nodes again"};
   }
@@ -78,6 +84,11 @@ std::string fixOfType(const std::string& part, const std::string& topic, const s
   return "remap " + part + ":= to a topic of that type ('rostopic find " + expected_type + "')";
 }
 
+std::string expectedMd5(const std::string& part) {
+  return part == "objects" ? ros::message_traits::md5sum<SemanticObjectArray>()
+                           : ros::message_traits::md5sum<nav_msgs::Odometry>();
+}
+
 /// What a topic carries instead, or where messages of its type can be had.
 std::optional<Prescription> topicProblem(const SystemObservation& system, const std::string& part,
                                          const std::string& expected_type) {
@@ -88,6 +99,11 @@ std::optional<Prescription> topicProblem(const SystemObservation& system, const 
   if (type != system.type_of_topic.end() && type->second != expected_type) {
     return Prescription{topic + " carries " + type->second + ", expected is " + expected_type,
                         fixOfType(part, topic, type->second, expected_type)};
+  }
+  const auto version = system.md5_of_topic.find(topic);
+  if (version != system.md5_of_topic.end() && version->second != expectedMd5(part)) {
+    return Prescription{topic + " carries another version of " + expected_type + " than this node knows",
+                        "build publisher and node of one version of the message, and source that workspace for both"};
   }
   if (valueOf(*status, "messages") != "0") return std::nullopt;
   std::vector<std::string> candidates;

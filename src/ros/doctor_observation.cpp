@@ -1,6 +1,7 @@
 #include <XmlRpcValue.h>
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
+#include <topic_tools/shape_shifter.h>
 
 #include "semantic_mht_slam/ros/diagnosis.h"
 #include "semantic_mht_slam/ros/doctor.h"
@@ -9,6 +10,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kPoll_s = 0.05;
+constexpr double kListen_s = 2.0;  // for a message that shows its version
 
 /// Publishers of a topic, as the master knows them.
 std::size_t publishersOf(const std::string& topic) {
@@ -33,6 +35,29 @@ void keepNewest(const diagnostic_msgs::DiagnosticArray& array, const std::string
     if (is_own && status.hardware_id == kDiagnosticsHardwareId) own.push_back(status);
   }
   if (!own.empty()) newest = std::move(own);
+}
+
+/// Of a message on each topic that the node has nothing from.
+std::map<std::string, std::string> versionsOfSilent(const std::vector<diagnostic_msgs::DiagnosticStatus>& statuses) {
+  std::map<std::string, std::string> md5_of_topic;
+  std::vector<ros::Subscriber> subscribers;
+  ros::NodeHandle handle;
+  for (const diagnostic_msgs::DiagnosticStatus& status : statuses) {
+    std::map<std::string, std::string> values;
+    for (const diagnostic_msgs::KeyValue& value : status.values) values[value.key] = value.value;
+    if (values.count("topic") == 0 || values["messages"] != "0") continue;
+    const std::string topic = values["topic"];
+    subscribers.push_back(handle.subscribe<topic_tools::ShapeShifter>(
+        topic, 1, [&md5_of_topic, topic](const topic_tools::ShapeShifter::ConstPtr& message) {
+          md5_of_topic[topic] = message->getMD5Sum();
+        }));
+  }
+  const ros::WallTime begin = ros::WallTime::now();
+  while (ros::ok() && md5_of_topic.size() < subscribers.size() && (ros::WallTime::now() - begin).toSec() < kListen_s) {
+    ros::spinOnce();
+    ros::WallDuration(kPoll_s).sleep();
+  }
+  return md5_of_topic;
 }
 
 }  // namespace
@@ -63,6 +88,7 @@ SystemObservation observeSystem(const std::string& node, double watch_s) {
   ros::master::V_TopicInfo topics;
   ros::master::getTopics(topics);
   for (const ros::master::TopicInfo& topic : topics) system.type_of_topic[topic.name] = topic.datatype;
+  system.md5_of_topic = versionsOfSilent(system.diagnostics);
   return system;
 }
 

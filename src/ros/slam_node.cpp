@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "semantic_mht_slam/common/length.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/parameters.h"
 #include "semantic_mht_slam/ros/starting_map.h"
@@ -12,11 +13,6 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kTrajectoryPause = 20.0;  // as long as it took, so that a long one takes no more than 5 % of the time
-constexpr std::uint32_t kSubscriberQueue = 1000;  // a burst until the callback moves it to the bounded queue
-
-/// Of the worker, after which the pose goes out without it.
-constexpr double kOverdue_s = 0.1;
-constexpr Stamp kFarAhead = 60LL * 1000000000LL;
 
 InputQueue::Clock::duration inWallTime(double seconds) {
   return std::chrono::duration_cast<InputQueue::Clock::duration>(std::chrono::duration<double>(seconds));
@@ -54,8 +50,6 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
         other_failures_.run("publishing the trajectory", [this] { publishSlowTopics(); });
       });
   diagnostics_ = std::make_unique<NodeDiagnostics>(handle_, private_handle, [this] { return status(); });
-  pose_timer_ = handle_.createWallTimer(ros::WallDuration(0.5 * kOverdue_s),
-                                        [this](const ros::WallTimerEvent&) { publishOverduePose(); });
   worker_ = std::thread([this] { work(); });
   slow_spinner_.start();
   service_spinner_.start();
@@ -76,60 +70,6 @@ SlamNode::~SlamNode() {
   worker_.join();
 }
 
-void SlamNode::subscribe() {
-  const auto at_once = ros::TransportHints().tcpNoDelay();  // or TCP may keep a message for 40 ms
-  odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry>(
-      "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); },
-      ros::VoidConstPtr(), at_once);
-  ros::NodeHandle service_handle(handle_);
-  service_handle.setCallbackQueue(&service_queue_);
-  initial_pose_subscriber_ = service_handle.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
-      "initialpose", 1, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) {
-        other_failures_.run("initialpose", [&] { expectAt(*message); });
-      });
-  objects_subscriber_ = handle_.subscribe<SemanticObjectArray>(
-      "objects", kSubscriberQueue, [this](const SemanticObjectArrayConstPtr& message) { receive(message); },
-      ros::VoidConstPtr(), at_once);
-}
-
-void SlamNode::receive(const nav_msgs::OdometryConstPtr& message) {
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    const ros::Time now = ros::Time::now();
-    odometry_monitor_.arrived(toStamp(message->header.stamp), now.isZero() ? std::nullopt : std::optional(toStamp(now)),
-                              wallSeconds());
-    unhandled_.push_back({message, ros::WallTime::now()});
-  }
-  queue_.push(message);
-  publishOverduePose();
-}
-
-/// A pose by odometry alone if the worker has been behind for too long.
-void SlamNode::publishOverduePose() {
-  nav_msgs::OdometryConstPtr message;
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    const bool is_behind =
-        !unhandled_.empty() && (ros::WallTime::now() - unhandled_.front().since).toSec() > kOverdue_s;
-    if (!is_behind || !handled_odometry_) return;
-    message = unhandled_.back().message;
-    const Stamp ahead = toStamp(message->header.stamp) - *handled_odometry_;
-    if (ahead <= 0 || ahead > kFarAhead) return;  // a jump: the worker finds out
-  }
-  RefusedInput counted_by_worker;
-  const StampedPose T_odom_base{toStamp(message->header.stamp), fromMessage(message->pose.pose)};
-  if (!gate_.isUsable(*message, counted_by_worker) || !T_odom_base.T_world_base.isValid()) return;
-  publisher_.publishDeadReckoning(T_odom_base, live_.get());
-}
-
-void SlamNode::receive(const SemanticObjectArrayConstPtr& message) {
-  {
-    const std::lock_guard<std::mutex> lock(status_mutex_);
-    objects_monitor_.arrived(toStamp(message->header.stamp), odometry_monitor_.status(0.0).stamp, wallSeconds());
-  }
-  queue_.push(message);
-}
-
 void SlamNode::work() {
   while (const std::optional<InputMessage> message = queue_.pop()) {
     const std::lock_guard<TicketMutex> lock(slam_mutex_);
@@ -140,16 +80,6 @@ void SlamNode::work() {
       warnOfDrops();
     });
   }
-}
-
-void SlamNode::noteHandled(const InputMessage& message) {
-  const auto* odometry = std::get_if<nav_msgs::OdometryConstPtr>(&message);
-  if (odometry == nullptr) return;
-  const std::lock_guard<std::mutex> lock(status_mutex_);
-  handled_odometry_ = latestStamp();
-  const auto is_it = [&](const UnhandledOdometry& waiting) { return waiting.message == *odometry; };
-  const auto handled = std::find_if(unhandled_.begin(), unhandled_.end(), is_it);  // those before it were dropped
-  if (handled != unhandled_.end()) unhandled_.erase(unhandled_.begin(), handled + 1);
 }
 
 void SlamNode::handleSafely(const InputMessage& message) {
@@ -209,6 +139,8 @@ void SlamNode::handle(const nav_msgs::Odometry& message) {
     ROS_WARN("time jumped back from %.3f s to %.3f s: %s", secondsFromStamp(*latest), message.header.stamp.toSec(),
              keeps_map ? "looking for the place in the map" : "starting a new map");
     sensors_.forgetOdometry();
+    plausibility_.clear();
+    T_odom_last_.reset();
     publisher_.forgetPose();
     keeps_map ? slam_->beginSession() : startAgain();
   }
@@ -225,8 +157,12 @@ void SlamNode::beginSessionUnlessGoingOn(const nav_msgs::Odometry& message) {
 
 void SlamNode::process(const nav_msgs::Odometry& message) {
   const StampedPose T_odom_base{toStamp(message.header.stamp), fromMessage(message.pose.pose)};
-  if (!slam_->addOdometry(T_odom_base)) return;
+  const std::size_t sessions = slam_->parts().sessions.count();
+  const bool is_used = slam_->addOdometry(T_odom_base);
+  estimator_.odometry_jumps += slam_->parts().sessions.count() - sessions;
+  if (!is_used) return;
   sensors_.addOdometry(T_odom_base);
+  noteWay(T_odom_base);
   const LiveConfig live = live_.get();
   if (isLocated(slam_->mode())) {
     publisher_.publishPose(*slam_, live);
@@ -234,6 +170,15 @@ void SlamNode::process(const nav_msgs::Odometry& message) {
     publisher_.forgetPose();
   }
   publisher_.publishFrame(*slam_, live);
+}
+
+void SlamNode::noteWay(const StampedPose& T_odom_base) {
+  plausibility_.add(T_odom_base);
+  if (T_odom_last_ && !isLocated(slam_->mode())) {
+    estimator_.lost_m += (T_odom_last_->inverse() * T_odom_base.T_world_base).translation_m.norm();
+  }
+  if (isLocated(slam_->mode())) estimator_.lost_m = 0.0;
+  T_odom_last_ = T_odom_base.T_world_base;
 }
 
 std::optional<Stamp> SlamNode::latestStamp() const {
@@ -261,6 +206,7 @@ void SlamNode::handle(const SemanticObjectArray& message) {
 
 void SlamNode::retryObjects() {
   while (auto frame = objects_gate_.next(gate_, latestStamp(), wallSeconds(), estimator_.refused)) {
+    plausibility_.add(*frame);
     slam_->addDetections(frame->stamp, std::move(frame->detections));
     publisher_.publishFrame(*slam_, live_.get());
   }
@@ -278,6 +224,9 @@ void SlamNode::noteStatus() {
   estimator_.landmarks = publisher_.landmarks();
   estimator_.loops = publisher_.loops();
   estimator_.graph = slam_->parts().graph.status();
+  estimator_.oddities = plausibility_.look();
+  estimator_.driven_m = slam_->parts().driven.way_m;
+  estimator_.far_m = slam_->parts().range_factor * Length::kReferenceRange_m;
   const std::lock_guard<std::mutex> lock(status_mutex_);
   noted_estimator_ = estimator_;
 }

@@ -75,14 +75,6 @@ const std::vector<Fault> kFaults = {
        s.clock.time_s.reset();
      },
      {"use_sim_time", "/clock"}},
-    {"ClockStandsStill",
-     diagnoseClock,
-     DiagnosticStatus::WARN,
-     [](NodeStatus& s) {
-       s.clock.use_sim_time = true;
-       s.clock.still_s = 4.0;
-     },
-     {"stands still", "4.0 s"}},
     {"SimTimeOff",
      diagnoseClock,
      DiagnosticStatus::WARN,
@@ -215,6 +207,47 @@ const std::vector<Fault> kFaults = {
      DiagnosticStatus::WARN,
      [](NodeStatus& s) { s.queue_dropped_objects = 5; },
      {"too slow", "oldest objects"}},
+    {"OdometryJumps",
+     diagnoseOdometry,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.estimator.odometry_jumps = 1; },
+     {"/odometry jumps"}},
+    {"OdometryInMillimetres",
+     diagnoseOdometry,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.estimator.oddities.speed_m_per_s = 2000.0; },
+     {"moves at 2000 m/s"}},
+    {"ObjectsInMillimetres",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.estimator.oddities.range_m = 20000.0; },
+     {"20000 m away"}},
+    {"CameraAxes",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.estimator.oddities.height_m = 12.0; },
+     {"12 m above 'base_link'"}},
+    {"WorldCoordinates",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.estimator.oddities.moving_along = 0.9; },
+     {"move along with the robot"}},
+    {"Lost",
+     diagnoseEstimator,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.estimator.far_m = 33.0;
+       s.estimator.lost_m = 400.0;
+     },
+     {"not found itself", "400 m"}},
+    {"NoLandmarks",
+     diagnoseEstimator,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) {
+       s.estimator.submaps = 4;
+       s.estimator.driven_m = 240.0;
+     },
+     {"no landmark after 240 m"}},
     {"ObjectsInTheMap",
      diagnoseObjects,
      DiagnosticStatus::ERROR,
@@ -224,6 +257,22 @@ const std::vector<Fault> kFaults = {
 
 INSTANTIATE_TEST_SUITE_P(Faults, DiagnosisTest, ::testing::ValuesIn(kFaults),
                          [](const auto& instance) { return instance.param.name; });
+
+TEST(DiagnosisOfABagTest, ABagThatIsOverIsNoFaultNorIsTheSilenceAfterIt) {
+  NodeStatus status = wellStatus();
+  status.clock.use_sim_time = true;
+  status.clock.still_s = 60.0;
+  status.odometry.silent_s = 60.0;
+  status.objects.silent_s = 60.0;
+  for (const Diagnose diagnose : {diagnoseClock, diagnoseOdometry, diagnoseObjects}) {
+    DiagnosticStatusWrapper after;
+    diagnose(status, status, after);
+    EXPECT_EQ(after.level, DiagnosticStatus::OK) << after.message;
+  }
+  DiagnosticStatusWrapper clock;
+  diagnoseClock(status, status, clock);
+  EXPECT_NE(clock.message.find("the bag is over"), std::string::npos) << clock.message;
+}
 
 TEST(TopicMonitorTest, RateIsThatOfTheMessagesAndFallsWhenTheyStop) {
   TopicMonitor monitor;

@@ -65,9 +65,32 @@ TEST(DoctorTest, CausesAreNamedBeforeTheirEffects) {
 TEST(DoctorTest, SimTimeWithoutClockAndChangedSimTimeAreNamed) {
   SystemObservation system = wellSystem();
   system.use_sim_time = true;
+  system.diagnostics[1].values.emplace_back();
+  system.diagnostics[1].values.back().key = "messages";
+  system.diagnostics[1].values.back().value = "0";
   EXPECT_EQ(problemOf(system), "use_sim_time is true and nobody publishes /clock");
   system.clock_publishers = 1;
   EXPECT_NE(problemOf(system).find("changed after"), std::string::npos);
+}
+
+TEST(DoctorTest, ABagThatIsOverIsNoProblem) {
+  SystemObservation system = wellSystem();
+  system.use_sim_time = true;
+  system.diagnostics[0] = makeStatus("clock", DiagnosticStatus::OK, "stands still", {{"use_sim_time", "true"}});
+  system.diagnostics[1] =
+      makeStatus("odometry", DiagnosticStatus::OK, "0.0 Hz", {{"topic", "/odometry"}, {"messages", "600"}});
+  EXPECT_EQ(problemOf(system), "");
+  system.diagnostics[1].values[0].value = "0";  // "messages", the first by name
+  EXPECT_EQ(problemOf(system), "use_sim_time is true and nobody publishes /clock");
+}
+
+TEST(DoctorTest, AnotherVersionOfTheMessagesIsNamed) {
+  SystemObservation system = wellSystem();
+  system.type_of_topic["/objects"] = "semantic_mht_slam/SemanticObjectArray";
+  system.diagnostics[2] =
+      makeStatus("objects", DiagnosticStatus::WARN, "no objects", {{"topic", "/objects"}, {"messages", "0"}});
+  system.md5_of_topic["/objects"] = "0123456789abcdef";
+  EXPECT_NE(problemOf(system).find("another version of semantic_mht_slam/SemanticObjectArray"), std::string::npos);
 }
 
 TEST(DoctorTest, SilentTopicIsAnsweredWithTopicsOfTheRightType) {

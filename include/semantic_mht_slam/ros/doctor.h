@@ -20,6 +20,7 @@ struct SystemObservation {
   bool use_sim_time = false;
   std::size_t clock_publishers = 0;
   std::map<std::string, std::string> type_of_topic;            ///< published topics
+  std::map<std::string, std::string> md5_of_topic;             ///< of the messages of input that does not arrive
   std::vector<diagnostic_msgs::DiagnosticStatus> diagnostics;  ///< the node's newest, in the node's order
 };
 

@@ -7,6 +7,7 @@
 
 #include "semantic_mht_slam/app/refused_input.h"
 #include "semantic_mht_slam/ros/failure_guard.h"
+#include "semantic_mht_slam/ros/input_plausibility.h"
 #include "semantic_mht_slam/ros/topic_monitor.h"
 #include "semantic_mht_slam/slam/map_graph.h"
 
@@ -29,6 +30,11 @@ struct EstimatorStatus {
   std::size_t submaps = 0;    ///< finished
   std::size_t loops = 0;      ///< accepted
   GraphStatus graph;
+  InputOddities oddities;
+  std::size_t odometry_jumps = 0;  ///< each begins a session
+  double driven_m = 0.0;           ///< by the frames of the map
+  double lost_m = 0.0;             ///< driven since the vehicle last knew where it is
+  double far_m = 0.0;              ///< as far as the detector sees, about
 };
 
 /// Times that frames took, of the last 1000.

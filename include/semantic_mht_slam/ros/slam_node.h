@@ -23,6 +23,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/ros/failure_guard.h"
+#include "semantic_mht_slam/ros/input_plausibility.h"
 #include "semantic_mht_slam/ros/input_queue.h"
 #include "semantic_mht_slam/ros/live_parameters.h"
 #include "semantic_mht_slam/ros/node_diagnostics.h"
@@ -80,6 +81,7 @@ class SlamNode {
   void beginSessionUnlessGoingOn(const nav_msgs::Odometry& message);
   std::optional<Stamp> latestStamp() const;
   void retryObjects();
+  void noteWay(const StampedPose& T_odom_base);
   void noteStatus();
 
   // With the estimator locked.
@@ -124,6 +126,8 @@ class SlamNode {
   OdometryGate gate_;
   SensorTransforms sensors_;
   ObjectsGate objects_gate_;
+  InputPlausibility plausibility_;
+  std::optional<Pose> T_odom_last_;
   bool is_localization_wanted_;
   bool is_paused_ = false;  ///< objects are dropped as they come
   bool is_loaded_;          ///< the map is from a file, and no odometry has come since

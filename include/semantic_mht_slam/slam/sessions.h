@@ -51,6 +51,8 @@ class Sessions {
   /// given.
   TrajectoryRecord record(const Map& map, const MapUncertainty& uncertainty = {}) const;
 
+  std::size_t count() const { return sessions_.size(); }
+
   /// All sessions that have odometry.
   std::vector<SessionSummary> summary(const Map& map) const;
 
