@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "semantic_mht_slam/common/error.h"
+
+namespace semantic_mht_slam {
+
+/// The bytes of a fuzzer as a file in memory.
+class FuzzedFile {
+ public:
+  FuzzedFile(const std::uint8_t* data, std::size_t size) : file_(::memfd_create("fuzzed", 0)) {
+    if (file_ < 0 || ::write(file_, data, size) != static_cast<ssize_t>(size)) std::abort();
+  }
+  ~FuzzedFile() { ::close(file_); }
+  FuzzedFile(const FuzzedFile&) = delete;
+  FuzzedFile& operator=(const FuzzedFile&) = delete;
+
+  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
+
+/// A file may be refused; any other exception is a finding.
+template <class Read>
+void readOrRefuse(const Read& read) {
+  try {
+    read();
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace semantic_mht_slam
