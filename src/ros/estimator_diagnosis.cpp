@@ -30,6 +30,8 @@ void findEstimatorFault(const NodeStatus& now, const NodeStatus& before, Finding
   finding.warn(now.estimator.lost_m > kLost * now.estimator.far_m,
                "the vehicle has not found itself in the map for " + formatFixed(now.estimator.lost_m, 0) + " m",
                "is it where the map is? say where by initialpose, or call reset for a new map");
+  finding.warn(now.estimator.is_lost, "lost: no pose goes out until the vehicle has found itself in the map",
+               "drive on where the map was made, or say where it is on initialpose");
   finding.warn(now.estimator.submaps >= kBarren && now.estimator.landmarks == 0,
                "no landmark after " + formatFixed(now.estimator.driven_m, 0) + " m",
                "are static classes seen (class table), and the same objects again and again? see objects");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/common/state_checks.h"
 
 namespace semantic_mht_slam {
 
