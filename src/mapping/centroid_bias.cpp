@@ -69,6 +69,7 @@ CentroidBias::CentroidBias(const BiasConfig& config, const ClassTable& classes) 
     stddev_m_.push_back(std::max(kMinPriorStddev_m, info.range_stddev_m));
     const bool has_bias = info.transition == Transition::kDirac || info.transition_stddev_m <= info.range_stddev_m;
     place_.push_back(has_bias ? biased_count_++ : -1);
+    has_one_place_.push_back(has_bias && info.is_static);
   }
   forget();
 }

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "semantic_mht_slam/mapping/mapper.h"
 
 // How far the vehicle moved in a submap, and what that says of its odometry.
@@ -30,7 +32,8 @@ double Mapper::stationSpacing_m() const {
 }
 
 void Mapper::learnOdometry(const std::vector<FusedAssociations>& associations) {
-  const auto corrected = [this](const Detection& detection) {
+  const auto corrected = [this](const Detection& detection) -> std::optional<Detection> {
+    if (!bias_.hasOnePlace(detection.class_index)) return std::nullopt;
     Detection result = bias_.corrected(detection);
     result.cov_m2 = detectorCov(detection);
     result.cov_m2->diagonal().head<2>().array() +=

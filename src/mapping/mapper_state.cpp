@@ -140,9 +140,12 @@ void LandmarkPropagation::transfer(StateArchive& archive) {
 }
 
 void ErrorInformation::transfer(StateArchive& archive) {
-  archive(matrix, vector, design, effect);
+  archive(matrix, vector, design, effect, coupling, nuisance_matrix, nuisance_vector);
   const Eigen::Index size = vector.size();
-  if (matrix.rows() != size || matrix.cols() != size || design.rows() != size || effect.rows() != size) {
+  const Eigen::Index nuisances = nuisance_vector.size();
+  if (matrix.rows() != size || matrix.cols() != size || design.rows() != size || effect.rows() != size ||
+      coupling.rows() != size || coupling.cols() != nuisances || nuisance_matrix.rows() != nuisances ||
+      nuisance_matrix.cols() != nuisances) {
     StateArchive::fail("errors of the odometry whose sizes do not fit");
   }
   archive.require(size <= kMostErrors && isNotNegative(matrix) && (design.array() >= 0.0).all(),
@@ -159,7 +162,7 @@ void VarianceComponents::transfer(StateArchive& archive) {
               effect_.size() == effects && effect_vector_.size() == effects && effect_information_.rows() == effects &&
               effect_information_.cols() == effects && effect_cov_.rows() == effects && effect_cov_.cols() == effects;
   for (const ErrorInformation& stretch : stretches_) {
-    fits = fits && stretch.design.cols() == parts && stretch.effect.cols() == effects;
+    fits = fits && stretch.design.cols() == parts && stretch.effect.cols() + stretch.coupling.cols() == effects;
   }
   if (!fits) StateArchive::fail("errors of the odometry in other parts");
   archive.require(isPositive(prior_precision_) && isNotNegative(effect_information_) && isNotNegative(effect_cov_),

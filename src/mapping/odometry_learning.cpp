@@ -20,16 +20,18 @@ Eigen::VectorXd verticalStddev(const OdometryNoise& noise) {
   return Eigen::Vector2d(noise.up_m_per_sqrt_m, noise.tilt_rad_per_sqrt_m);
 }
 
-/// In the order of `SystematicErrors`.
+/// In the order of `SystematicErrors`, then what the detector's ranges have in common.
 Eigen::VectorXd systematicStddev(const OdometryConfig& config) {
-  Eigen::VectorXd stddev(5);
+  Eigen::VectorXd stddev(5 + kRangeErrors);
   stddev << config.scale_stddev, config.scale_stddev, config.bend_stddev_rad_per_m, config.direction_stddev_rad,
-      config.lever_stddev_m;
+      config.lever_stddev_m, config.range_scale_stddev, config.range_offset_stddev_m;
   return stddev;
 }
 
 ErrorInformation withDesign(StepInformation steps, int parts) {
-  ErrorInformation result{std::move(steps.matrix), std::move(steps.vector), {}, std::move(steps.effect)};
+  ErrorInformation result{std::move(steps.matrix),      std::move(steps.vector),   {},
+                          std::move(steps.effect),      std::move(steps.coupling), std::move(steps.range_matrix),
+                          std::move(steps.range_vector)};
   result.design = Eigen::MatrixXd::Zero(result.vector.size(), parts);
   return result;
 }
@@ -73,6 +75,11 @@ void describe(OdometryConfig& config, Fields& fields) {
              "of the angle between the base's x axis and the way,");
   fields.add("lever_stddev", config.lever_stddev_m, "m", {1e-9, 10.0},
              "and of the distance from the base to the axle that it turns about.");
+  fields.add(
+      "range_scale_stddev", config.range_scale_stddev, "", {1e-9, 0.5},
+      "Deviation of a scale that all ranges of the detector may be wrong by: it looks like one of the odometry.");
+  fields.add("range_offset_stddev", config.range_offset_stddev_m, "m", {1e-9, 10.0},
+             "The same of what is added to all of them.");
 }
 
 OdometryLearning::OdometryLearning(const OdometryConfig& config)
@@ -100,7 +107,7 @@ void OdometryLearning::readOff() {
   SystematicErrors& errors = model_.systematic;
   CoefficientEstimate* const all[] = {&errors.scale_translation, &errors.scale_turn, &errors.heading_rad_per_m,
                                       &errors.direction_m_per_m, &errors.lever_m_per_rad};
-  for (Eigen::Index i = 0; i < mean.size(); ++i) *all[i] = {mean[i], stddev[i]};
+  for (Eigen::Index i = 0; i < mean.size() - kRangeErrors; ++i) *all[i] = {mean[i], stddev[i]};
 }
 
 }  // namespace semantic_mht_slam

@@ -42,21 +42,27 @@ std::vector<MotionVariance> variancesOf(const std::vector<Motion>& motion, const
 /// Information on the steps' errors e = e0 + E x from that on the poses' errors x around x = 0, where `odometry` is
 /// the information of the odometry on e. The detections are as noisy as their residuals are. Empty if they do not fit
 /// at all.
-StepInformation stepInformation(const Equations& poses, const Eigen::VectorXd& odometry, const Eigen::MatrixXd& E,
+StepInformation stepInformation(const Equations& seen, const Eigen::VectorXd& odometry, const Eigen::MatrixXd& E,
                                 const Eigen::VectorXd& e0) {
+  const Eigen::Index size = e0.size();
   const Eigen::MatrixXd A = E.inverse();
-  const Eigen::LDLT<Eigen::MatrixXd> solver(poses.H + E.transpose() * odometry.asDiagonal() * E);
-  const double fitted = solver.solve(poses.H).trace();  // parameters that the detections decided
-  const Eigen::VectorXd x = -solver.solve(poses.g + E.transpose() * odometry.cwiseProduct(e0));
-  const double squares = poses.squares + 2.0 * poses.g.dot(x) + x.dot(poses.H * x);
-  const double freedom = std::max(0.0, poses.freedom - fitted);
+  const Eigen::MatrixXd H = seen.H.topLeftCorner(size, size);
+  const Eigen::VectorXd g = seen.g.head(size);
+  const Eigen::LDLT<Eigen::MatrixXd> solver(H + E.transpose() * odometry.asDiagonal() * E);
+  const double fitted = solver.solve(H).trace();  // parameters that the detections decided
+  const Eigen::VectorXd x = -solver.solve(g + E.transpose() * odometry.cwiseProduct(e0));
+  const double squares = seen.squares + 2.0 * g.dot(x) + x.dot(H * x);
+  const double freedom = std::max(0.0, seen.freedom - fitted);
   const double excess = (squares + kNoiseFreedom) / (freedom + kNoiseFreedom);
   if (!(excess < kMostExcess)) return {};
   StepInformation result;
-  result.matrix = A.transpose() * poses.H * A / excess;
+  result.matrix = A.transpose() * H * A / excess;
   result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
-  result.vector = result.matrix * e0 - A.transpose() * poses.g / excess;
-  if (!result.matrix.allFinite() || !result.vector.allFinite()) return {};
+  result.vector = result.matrix * e0 - A.transpose() * g / excess;
+  result.coupling = A.transpose() * seen.H.topRightCorner(size, kRangeErrors) / excess;
+  result.range_matrix = seen.H.bottomRightCorner(kRangeErrors, kRangeErrors) / excess;
+  result.range_vector = result.coupling.transpose() * e0 - seen.g.tail(kRangeErrors) / excess;
+  if (!result.matrix.allFinite() || !result.vector.allFinite() || !result.coupling.allFinite()) return {};
   return result;
 }
 
@@ -86,8 +92,9 @@ class PlanarStretch {
       const Equations seen = equationsOf<2>(rows(), kPoseNumbers * steps_);
       const Eigen::MatrixXd E = jacobian();
       const Eigen::VectorXd weights = variance_.cwiseInverse();
-      const Eigen::MatrixXd H = seen.H + E.transpose() * weights.asDiagonal() * E;
-      const Eigen::VectorXd g = seen.g + E.transpose() * weights.cwiseProduct(errors());
+      const Eigen::Index size = weights.size();
+      const Eigen::MatrixXd H = seen.H.topLeftCorner(size, size) + E.transpose() * weights.asDiagonal() * E;
+      const Eigen::VectorXd g = seen.g.head(size) + E.transpose() * weights.cwiseProduct(errors());
       const Eigen::LLT<Eigen::MatrixXd> factor(H);
       if (factor.info() != Eigen::Success) return false;
       const Eigen::VectorXd x = factor.solve(-g);
@@ -105,7 +112,7 @@ class PlanarStretch {
     if (result.vector.size() == 0) return result;
     result.effect = Eigen::MatrixXd::Zero(kPoseNumbers * steps_, 5);
     for (Eigen::Index k = 0; k < steps_; ++k) {
-      const Eigen::Vector3d& step = odometry_[static_cast<std::size_t>(k)];
+      const Eigen::Vector3d step = this->step(k);  // the odometry's own has its noise in it
       result.effect.col(0).segment<2>(3 * k) = step.head<2>();
       result.effect(3 * k + 2, 1) = step[2];
       result.effect(3 * k + 2, 2) = step.x();
@@ -166,6 +173,7 @@ class PlanarStretch {
         row.keyframe = seen->keyframe;
         row.point_m = poses_[k].head<2>() + lever_m;
         row.J << 1.0, 0.0, -lever_m.y(), 0.0, 1.0, lever_m.x();
+        row.eye_m = poses_[k].head<2>();
         row.information = (R * cov.topLeftCorner<2, 2>() * R.transpose()).inverse();
         result.back().push_back(row);
       }
@@ -220,7 +228,9 @@ StepInformation verticalInformation(const OdometryStretch& stretch, const Odomet
   StepInformation result = stepInformation(equationsOf<1>(landmarks, kPoseNumbers * steps), variance.cwiseInverse(), E,
                                            Eigen::VectorXd::Zero(kPoseNumbers * steps));
   if (result.vector.size() == 0) return result;
-  result.effect = Eigen::MatrixXd::Zero(kPoseNumbers * steps, 0);
+  result.effect = result.coupling = Eigen::MatrixXd::Zero(kPoseNumbers * steps, 0);
+  result.range_matrix = Eigen::MatrixXd();
+  result.range_vector = Eigen::VectorXd();
   result.motion = stretch.motion;
   return result;
 }

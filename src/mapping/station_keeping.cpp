@@ -39,10 +39,11 @@ std::vector<OdometryStretch> StationKeeping::stretches(const std::vector<FusedAs
       for (const Seen& seen : station.seen) {
         const LandmarkId landmark = associations.at(seen.place).landmark_of_measurement.at(seen.measurement);
         if (landmark == kNoLandmark) continue;
-        const Detection detection = corrected(seen.detection);
+        const std::optional<Detection> detection = corrected(seen.detection);
+        if (!detection) continue;
         const Eigen::Matrix3d R = seen.T_station_base.rotation.toRotationMatrix();
-        stretch.observations.push_back({static_cast<int>(k - first), seen.T_station_base * detection.position_m,
-                                        R * *detection.cov_m2 * R.transpose(), landmark});
+        stretch.observations.push_back({static_cast<int>(k - first), seen.T_station_base * detection->position_m,
+                                        R * *detection->cov_m2 * R.transpose(), landmark});
       }
     }
   }

@@ -52,14 +52,27 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
   Eigen::MatrixXd V_inverse = H;
   V_inverse.noalias() -= whitened.transpose() * whitened;
   const Eigen::VectorXd V_inverse_y = stretch.vector - H * factor.solve(stretch.vector);
-  const Eigen::MatrixXd V_inverse_effect = V_inverse * stretch.effect;
-  const Eigen::VectorXd u = V_inverse_y - V_inverse_effect * effect_;
+  // What a unit of each coefficient adds to V^-1 y, and what they are known by.
+  const Eigen::Index effects = stretch.effect.cols();
+  const Eigen::Index nuisances = stretch.coupling.cols();
+  Eigen::MatrixXd response(H.rows(), effects + nuisances);
+  response.leftCols(effects) = V_inverse * stretch.effect;
+  response.rightCols(nuisances) = stretch.coupling - H * factor.solve(stretch.coupling);
+  const Eigen::VectorXd u = V_inverse_y - response * effect_;
   const Eigen::MatrixXd parts = stretch.design * log_variance_.array().exp().matrix().asDiagonal();
   const Eigen::VectorXd most = kMostDeviations * kMostDeviations * V_inverse.diagonal().cwiseMax(0.0);
   score.gradient = 0.5 * parts.transpose() * (u.cwiseAbs2().cwiseMin(most) - V_inverse.diagonal());
   score.fisher = 0.5 * parts.transpose() * V_inverse.cwiseAbs2() * parts;
-  score.effect_information = stretch.effect.transpose() * V_inverse_effect;
-  score.effect_vector = stretch.effect.transpose() * V_inverse_y;
+  score.effect_information.resize(effects + nuisances, effects + nuisances);
+  score.effect_information.topRows(effects) = stretch.effect.transpose() * response;
+  score.effect_information.bottomLeftCorner(nuisances, effects) =
+      score.effect_information.topRightCorner(effects, nuisances).transpose();
+  score.effect_information.bottomRightCorner(nuisances, nuisances) =
+      stretch.nuisance_matrix - stretch.coupling.transpose() * factor.solve(stretch.coupling);
+  score.effect_vector.resize(effects + nuisances);
+  score.effect_vector.head(effects) = stretch.effect.transpose() * V_inverse_y;
+  score.effect_vector.tail(nuisances) =
+      stretch.nuisance_vector - stretch.coupling.transpose() * factor.solve(stretch.vector);
   return score.gradient.allFinite() && score.fisher.allFinite() && score.effect_vector.allFinite();
 }
 

@@ -63,6 +63,7 @@ SlamConfig fittedTo(const SlamConfig& config, double range_factor) {
   odometry.noise.tilt_rad_per_sqrt_m /= root;
   odometry.bend_stddev_rad_per_m /= range_factor;
   odometry.lever_stddev_m *= range_factor;
+  odometry.range_offset_stddev_m *= range_factor;
   return result;
 }
 

@@ -126,7 +126,7 @@ struct Section {
 
 constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 4, transferInput},
                                  {"submaps", 2, transferSubmaps},   {"keyframes", 3, transferKeyframes},
-                                 {"graph", 3, transferGraph},       {"hypotheses", 5, transferMapper}};
+                                 {"graph", 3, transferGraph},       {"hypotheses", 6, transferMapper}};
 
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
 void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,

@@ -121,6 +121,13 @@ TEST(CentroidBiasTest, IsZeroBeforeAnythingWasSeenAndNoMoreUncertainThanTheClass
   EXPECT_NEAR(cov(1, 1), 0.0, 1e-12);
 }
 
+TEST(CentroidBiasTest, StaticObjectsThatAreSeenAlikeFromEverywhereHaveOnePlace) {
+  const CentroidBias bias({}, makeTable());
+  EXPECT_TRUE(bias.hasOnePlace(kPole));
+  EXPECT_FALSE(bias.hasOnePlace(kBuilding)) << "another part of it is seen from elsewhere";
+  EXPECT_FALSE(bias.hasOnePlace(kVehicle)) << "it may drive";
+}
+
 TEST(CentroidBiasTest, UncertaintyFallsWithEvidence) {
   const double first = estimate(4, 0.0, true, 1).at(kPole, 25.0).range_variance_m2;
   const double second = estimate(4, 0.0, true, 20).at(kPole, 25.0).range_variance_m2;

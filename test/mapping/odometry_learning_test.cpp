@@ -27,8 +27,9 @@ Pose measured(const Pose& step, const OdometryModel& odometry, Rng& rng) {
   return seen;
 }
 
-/// A stretch among poles with turns of up to 0.8 rad a step; a share of the associations is wrong.
-OdometryStretch drive(const OdometryModel& odometry, Rng& rng, double wrong_share = 0.0) {
+/// A stretch among poles with turns of up to 0.8 rad a step; a share of the associations is wrong, all ranges are so
+/// many times too long.
+OdometryStretch drive(const OdometryModel& odometry, Rng& rng, double wrong_share = 0.0, double range_scale = 1.0) {
   OdometryStretch stretch;
   std::vector<Eigen::Vector3d> poles;
   for (int i = 0; i < 30; ++i)
@@ -40,6 +41,7 @@ OdometryStretch drive(const OdometryModel& odometry, Rng& rng, double wrong_shar
     for (std::size_t i = 0; i < poles.size(); ++i) {
       Eigen::Vector3d seen_m = is.inverse() * poles[i];
       if (seen_m.norm() > 25.0) continue;
+      seen_m *= range_scale;
       for (int axis = 0; axis < 3; ++axis) seen_m[axis] += rng.normal(0.0, kDetector_m);
       const std::size_t id = rng.bernoulli(wrong_share) ? static_cast<std::size_t>(rng.index(30)) : i;
       stretch.observations.push_back({k, seen_m, kDetector_m * kDetector_m * Eigen::Matrix3d::Identity(), id + 1});
@@ -91,6 +93,17 @@ TEST(OdometryLearningTest, FindsThatTheOdometryTurnsTooFar) {
   const CoefficientEstimate turn = learnedFrom(wheels(), 40, 2).model().systematic.scale_turn;
   EXPECT_LT(turn.stddev, 0.008);
   EXPECT_NEAR(turn.mean, -0.03, 3.0 * turn.stddev);
+}
+
+TEST(OdometryLearningTest, AScaleOfTheRangesIsNotTakenForOneOfTheOdometryWithoutDoubt) {
+  for (const double range_scale : {0.99, 1.0, 1.01}) {
+    OdometryLearning learning({});
+    Rng rng(9);
+    for (int i = 0; i < 40; ++i) learning.add(drive(wheels(), rng, 0.0, range_scale));
+    const CoefficientEstimate scale = learning.model().systematic.scale_translation;
+    EXPECT_NEAR(scale.mean, 0.0, 2.5 * scale.stddev) << range_scale;
+    EXPECT_LT(scale.stddev, 0.01) << range_scale;
+  }
 }
 
 TEST(OdometryLearningTest, TellsAGoodOdometryFromABadOne) {

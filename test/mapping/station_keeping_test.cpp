@@ -58,6 +58,15 @@ TEST(StationKeepingTest, FramesThatShowLittleAreTakenTogether) {
   EXPECT_EQ(stretch.observations[3].keyframe, 1);
 }
 
+TEST(StationKeepingTest, DetectionsThatSayNothingAreLeftOut) {
+  Drive drive;
+  for (int i = 0; i <= 20; ++i) drive.addStraight(i, 10);
+  const auto far_right = [](const Detection& detection) {
+    return detection.position_m.y() > 6.5 ? std::optional<Detection>(as(detection)) : std::nullopt;
+  };
+  EXPECT_EQ(drive.stations.stretches(drive.associations, far_right)[0].observations.size(), 15U);
+}
+
 TEST(StationKeepingTest, ALongSubmapComesInPieces) {
   Drive drive;
   for (int i = 0; i <= 30; ++i) drive.addStraight(kSpacing_m * i, 10);

@@ -69,6 +69,9 @@ class CentroidBias {
   /// Takes one stretch. Landmarks with fewer than `min_observations` are left out, wrong associations are weighed down.
   void add(const BiasStretch& stretch, const OdometryNoise& odometry);
 
+  /// Whether objects of the class stand where they stood, and are seen at one place from everywhere but for the bias.
+  bool hasOnePlace(ClassIndex class_index) const { return has_one_place_[static_cast<std::size_t>(class_index)]; }
+
   /// The bias of a class at a range. Zero with zero variance when switched off.
   CentroidBiasEstimate at(ClassIndex class_index, double range_m) const;
 
@@ -97,9 +100,10 @@ class CentroidBias {
 
   BiasConfig config_;
   std::vector<double> stddev_m_;  ///< of each class, as the class table has it
-  std::vector<int> place_;        ///< of each class among those that have a bias; -1: has none
-  int biased_count_ = 0;          ///< classes that have one
-  Eigen::MatrixXd information_;   ///< of the coefficients
+  std::vector<bool> has_one_place_;
+  std::vector<int> place_;       ///< of each class among those that have a bias; -1: has none
+  int biased_count_ = 0;         ///< classes that have one
+  Eigen::MatrixXd information_;  ///< of the coefficients
   Eigen::VectorXd vector_;
   Eigen::VectorXd mean_;
   Eigen::MatrixXd cov_;

@@ -15,6 +15,8 @@ struct OdometryConfig {
   double bend_stddev_rad_per_m = 0.002;
   double direction_stddev_rad = 0.02;
   double lever_stddev_m = 0.2;
+  double range_scale_stddev = 0.005;
+  double range_offset_stddev_m = 0.02;
 };
 
 void describe(OdometryConfig& config, Fields& fields);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "semantic_mht_slam/mapping/fusion.h"
@@ -24,8 +25,8 @@ class StationKeeping {
   void add(std::size_t place, const Pose& T_submap_base, const Motion& motion, const Detections& detections,
            double spacing_m);
 
-  /// A detection without bias and with its covariance, m^2, both in the base frame.
-  using Corrected = std::function<Detection(const Detection&)>;
+  /// A detection without bias and with its covariance, m^2, both in the base frame; none if it says nothing.
+  using Corrected = std::function<std::optional<Detection>(const Detection&)>;
 
   /// The submap in pieces of some stations each, with its associations.
   std::vector<OdometryStretch> stretches(const std::vector<FusedAssociations>& associations,

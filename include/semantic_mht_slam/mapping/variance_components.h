@@ -9,13 +9,17 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
-/// Information on errors that nobody has observed directly, in form of a likelihood: exp(-e' matrix e / 2 + vector' e).
-/// Each component of the errors' variance is variance[i] * design.col(i), row by row.
+/// Information on errors e that nobody has observed directly, and on nuisances n of whatever observed them, in form of
+/// a likelihood: exp(-e' matrix e / 2 + e' (vector - coupling n) - n' nuisance_matrix n / 2 + nuisance_vector' n). Each
+/// component of the errors' variance is variance[i] * design.col(i), row by row.
 struct ErrorInformation {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd vector;
   Eigen::MatrixXd design;  ///< not negative; a row an error
   Eigen::MatrixXd effect;  ///< what the errors have in common: their mean is effect * coefficients
+  Eigen::MatrixXd coupling;
+  Eigen::MatrixXd nuisance_matrix;
+  Eigen::VectorXd nuisance_vector;
 
   void transfer(StateArchive& archive);
 };
@@ -28,7 +32,7 @@ struct ErrorInformation {
 class VarianceComponents {
  public:
   /// Priors: the standard deviations of the parts, each known within a factor exp(`log_stddev`), and those of the
-  /// coefficients about zero.
+  /// coefficients about zero, the nuisances last.
   VarianceComponents(const Eigen::VectorXd& prior_stddev, double log_stddev, const Eigen::VectorXd& effect_stddev);
 
   /// Takes a stretch. One that has no solution is left out.
@@ -37,7 +41,7 @@ class VarianceComponents {
   /// The standard deviations of the parts, as far up as they are unsure.
   Eigen::VectorXd stddev() const;
 
-  /// The coefficients and their covariance.
+  /// The coefficients, with the nuisances, and their covariance.
   const Eigen::VectorXd& effect() const { return effect_; }
   const Eigen::MatrixXd& effectCov() const { return effect_cov_; }
 
