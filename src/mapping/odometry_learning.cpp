@@ -59,6 +59,14 @@ ErrorInformation verticalErrors(StepInformation steps) {
   return result;
 }
 
+/// What of an estimate is more than its own uncertainty (James, Stein, Estimation with quadratic loss, 1961, positive
+/// part): the prior is wide enough for bad wheels, and most odometry is far better than that.
+CoefficientEstimate beyondUncertainty(const CoefficientEstimate& estimate) {
+  const double mean_sq = estimate.mean * estimate.mean;
+  const double variance = estimate.stddev * estimate.stddev;
+  return {mean_sq > variance ? estimate.mean * (1.0 - variance / mean_sq) : 0.0, estimate.stddev};
+}
+
 }  // namespace
 
 void describe(OdometryConfig& config, Fields& fields) {
@@ -108,6 +116,7 @@ void OdometryLearning::readOff() {
   CoefficientEstimate* const all[] = {&errors.scale_translation, &errors.scale_turn, &errors.heading_rad_per_m,
                                       &errors.direction_m_per_m, &errors.lever_m_per_rad};
   for (Eigen::Index i = 0; i < mean.size() - kRangeErrors; ++i) *all[i] = {mean[i], stddev[i]};
+  errors.scale_translation = beyondUncertainty(errors.scale_translation);
 }
 
 }  // namespace semantic_mht_slam

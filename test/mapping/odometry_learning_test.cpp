@@ -106,6 +106,17 @@ TEST(OdometryLearningTest, AScaleOfTheRangesIsNotTakenForOneOfTheOdometryWithout
   }
 }
 
+TEST(OdometryLearningTest, AScaleIsAppliedAsFarAsItExceedsItsDoubt) {
+  const auto learned = [](double range_scale) {
+    OdometryLearning learning({});
+    Rng rng(10);
+    for (int i = 0; i < 40; ++i) learning.add(drive(wheels(), rng, 0.0, range_scale));
+    return learning.model().systematic.scale_translation.mean;
+  };
+  EXPECT_EQ(learned(1.0), 0.0);
+  EXPECT_NEAR(learned(0.95), -0.05, 0.01);
+}
+
 TEST(OdometryLearningTest, TellsAGoodOdometryFromABadOne) {
   OdometryModel visual;
   visual.noise = {0.015, 0.01, 0.01, 0.0001, 0.004, 0.0002};
