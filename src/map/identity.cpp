@@ -23,7 +23,9 @@ void Identity::add(const Submap& submap) {
 }
 
 void Identity::add(ClosureId closure, const std::vector<SameLandmark>& pairs) {
+  const std::size_t first = edges_.size();
   addEdges(closure, pairs);
+  if (holding_.count(closure) > 0) joinFrom(first);
 }
 
 void Identity::addEdges(ClosureId closure, const std::vector<SameLandmark>& pairs) {

@@ -27,6 +27,13 @@ ClosureId Map::add(LoopClosureRecord closure) {
   return id;
 }
 
+void Map::addPairs(ClosureId closure, const std::vector<SameLandmark>& pairs) {
+  std::vector<SameLandmark>& all = closures_[closure].pairs;
+  all.insert(all.end(), pairs.begin(), pairs.end());
+  identity_.add(closure, pairs);
+  placeAgain(identity_.changedNames());
+}
+
 void Map::apply(const GraphUpdate& update) {
   if (!update.T_map_keyframe.empty()) {
     T_map_keyframe_ = IdVector<KeyframeId, Pose>(update.T_map_keyframe);

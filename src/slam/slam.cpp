@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/stopwatch.h"
+#include "semantic_mht_slam/slam/seen_again.h"
 #include "semantic_mht_slam/slam/surroundings.h"
 
 #include "newest_pose.h"
@@ -174,6 +175,11 @@ void Slam::endSubmap() {
     if (is_any_verified) parts_.graph.settle(map);
   }
   tieToNewestKeyframe(parts_);
+  const ClosureId tie = newestTie(map);
+  if (tie.isNone()) return;
+  const auto same = landmarksSeenAgain(map, parts_.graph, classes_, map.closures()[tie], recentSubmaps(fitted_),
+                                       fitted_.back_end.revisit.pair_distance_m);
+  map.addPairs(tie, same);  // the graph joins them with its next solution
 }
 
 void Slam::finish() {

@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kGraphShift = 1.0 / 6.0;  // of the reach: as far as the graph may move a landmark in its submap
 
-/// A landmark of a submap in the map frame; those of the pose graph stand where the graph has them.
+}  // namespace
+
 MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, const MixtureLandmark& seen) {
   MixtureLandmark landmark = transformed(map.T_map_submap(submap), seen);
   const std::optional<Eigen::Vector3d> position_m = graph.landmark(landmark.id);
@@ -17,8 +18,6 @@ MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, co
   for (MixtureComponent& component : landmark.components) component.position.mean_m += shift_m;
   return landmark;
 }
-
-}  // namespace
 
 void addPoseShare(const FixedAxesCov& pose_cov, const Eigen::Vector3d& lever_m, double floor_m,
                   MixtureLandmark& landmark) {

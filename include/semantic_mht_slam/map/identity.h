@@ -44,7 +44,7 @@ class Identity {
   /// What a submap saw, and which of its names its duplicate test took for one landmark.
   void add(const Submap& submap);
 
-  /// What a loop closure says; it does not hold until `decide` says so.
+  /// What a loop closure says, or says besides; it does not hold until `decide` says so.
   void add(ClosureId closure, const std::vector<SameLandmark>& pairs);
 
   /// Loop closures that hold from now on, or fell.

@@ -40,6 +40,9 @@ class Map {
   /// Takes a closure that was looked at. One that is verified holds once an update says so.
   ClosureId add(LoopClosureRecord closure);
 
+  /// More landmarks that a verified closure shows to be one, beside those that it was added with.
+  void addPairs(ClosureId closure, const std::vector<SameLandmark>& pairs);
+
   void apply(const GraphUpdate& update);
 
   const IdVector<SubmapId, std::shared_ptr<const Submap>>& submaps() const { return submaps_; }

@@ -15,6 +15,9 @@ namespace semantic_mht_slam {
 void addPoseShare(const FixedAxesCov& pose_cov, const Eigen::Vector3d& lever_m, double floor_m,
                   MixtureLandmark& landmark);
 
+/// A landmark of a submap in the map frame; those of the pose graph stand where the graph has them.
+MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, const MixtureLandmark& seen);
+
 /// The landmarks of a map at their corrected places, map frame, by rising id; their covariances hold what is not known
 /// of the pose that they were seen from.
 std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph, const MapUncertainty& uncertainty);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "semantic_mht_slam/map/map.h"
+#include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/slam/map_graph.h"
+
+namespace semantic_mht_slam {
+
+/// Landmarks that the present pass saw first, each with the one of an earlier pass that stands where it stands: static,
+/// of the same class, nearer than `pair_distance_m` on the plane and than their covariances and that of the closure
+/// `tie` explain, and no other candidate for either. A closure pairs only what one keyframe saw; the solution that it
+/// leads to shows the others to be the same. The newest `recent_submaps` submaps are the present pass.
+std::vector<SameLandmark> landmarksSeenAgain(const Map& map, const MapGraph& graph, const ClassTable& classes,
+                                             const LoopClosureRecord& tie, std::size_t recent_submaps,
+                                             double pair_distance_m);
+
+/// The last closure of the newest submap that passed the checks of its search, if it holds; else none.
+ClosureId newestTie(const Map& map);
+
+}  // namespace semantic_mht_slam
