@@ -8,7 +8,7 @@ namespace semantic_mht_slam {
 namespace {
 
 TEST(OrchardTest, EveryTreeIsOneLandmarkAndEveryLandmarkOneTree) {
-  const std::pair<std::uint64_t, double> seeds_and_drifts[] = {{1, 0.0002}, {4, 0.0004}};
+  const std::pair<std::uint64_t, double> seeds_and_drifts[] = {{1, 0.0002}, {2, -0.0004}, {4, 0.0004}};
   for (const auto& [seed, drift_rad_per_m] : seeds_and_drifts) {
     OrchardDrive drive(seed, drift_rad_per_m);
     Slam slam(defaultsOf(Method::kDpmhm), makeOrchardClasses());
