@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/gaussian.h"
+
 namespace semantic_mht_slam {
 
 namespace {
@@ -60,6 +62,30 @@ void GraphState::addSighting(const LandmarkSighting& sighting) {
   if (is_new || landmark.sightings.back().node != newest) nodes[newest].landmarks.push_back(number);
   landmark.sightings.push_back(
       {newest, sighting.landmark, std::make_unique<PointCost<3>>(sighting.position_m, sighting.cov_m2.inverse())});
+}
+
+PoseNode GraphState::node(int index) const {
+  const NodeState& state = nodes.at(static_cast<std::size_t>(index));
+  PoseNode node;
+  node.T_previous_node = state.pose();
+  node.shared_errors = state.shared_errors;
+  node.T_world_node = state.pose();
+  if (state.odometry_cost) {
+    const Matrix6d root = state.odometry_cost->squareRoot();
+    node.T_previous_node = state.odometry_cost->measured();
+    node.odometry_cov = symmetric((root.transpose() * root).inverse());
+  }
+  for (const std::int64_t number : state.landmarks) {
+    const std::vector<SightingFactor>& sightings = landmarks.at(number).sightings;
+    auto seen = std::lower_bound(sightings.begin(), sightings.end(), index,
+                                 [](const SightingFactor& sighting, int i) { return sighting.node < i; });
+    for (; seen != sightings.end() && seen->node == index; ++seen) {
+      const Eigen::Matrix3d root = seen->cost->squareRoot();
+      node.sightings.push_back(
+          {seen->landmark, seen->cost->measured(), symmetric((root.transpose() * root).inverse())});
+    }
+  }
+  return node;
 }
 
 std::set<int> GraphState::regroup(const std::vector<std::vector<std::int64_t>>& groups) {

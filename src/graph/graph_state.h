@@ -89,6 +89,9 @@ struct GraphState {
   /// Adds a sighting by the newest node.
   void addSighting(const LandmarkSighting& sighting);
 
+  /// See `PoseGraph::node`.
+  PoseNode node(int index) const;
+
   /// See `PoseGraph::regroup`; every group rising. A landmark stays where the one is that was seen first of those that
   /// come into it as a whole; a part of one stands where its sightings put it. Returns the nodes that saw one of them.
   std::set<int> regroup(const std::vector<std::vector<std::int64_t>>& groups);

@@ -62,7 +62,7 @@ int PoseGraph::Impl::addNode(const PoseNode& node) {
   check(node, index == 0);
   NodeState& state = graph_.nodes.emplace_back();
   const Pose before = index == 0 ? Pose::identity() : graph_.nodes[index - 1].pose();
-  writeBlock(before * node.T_previous_node, state.block.data());
+  writeBlock(node.T_world_node.value_or(before * node.T_previous_node), state.block.data());
   if (index > 0) {
     state.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_node, node.odometry_cov.inverse());
     state.shared_errors = node.shared_errors;
@@ -253,6 +253,9 @@ void PoseGraph::transfer(StateArchive& archive) {
   if (archive.isReading() && nodes() > 0) throw std::logic_error("PoseGraph: a state is read into an empty graph");
   impl_->transfer(archive);
 }
+PoseNode PoseGraph::node(int index) const {
+  return impl_->graph_.node(index);
+}
 int PoseGraph::nodes() const {
   return impl_->graph_.nodeCount();
 }
@@ -287,11 +290,9 @@ double PoseGraph::cost() const {
 std::optional<GraphMarginals> PoseGraph::marginals() const {
   return marginalsOf(impl_->graph_, impl_->config());
 }
-
 std::optional<std::vector<NodeMarginal>> PoseGraph::coarseMarginals() const {
   return impl_->coarseMarginals();
 }
-
 std::int64_t PoseGraph::keptNumber(std::int64_t id) const {
   return impl_->graph_.keptNumber(id);
 }

@@ -28,6 +28,7 @@ inline bool isCovariance6(const PoseCov& cov) {
 
 inline void check(const PoseNode& node, bool is_first) {
   require(node.T_previous_node.isValid(), "odometry is not a finite pose");
+  require(!node.T_world_node || node.T_world_node->isValid(), "an estimate is not a finite pose");
   require(is_first || isCovariance6(node.odometry_cov), "odometry covariance is not positive definite");
   std::vector<std::int64_t> ids;
   for (const LandmarkSighting& sighting : node.sightings) {

@@ -175,6 +175,12 @@ void Mapper::add(Frame frame, Rng& rng) {
   tree_.step(input, rng);
 }
 
+void Mapper::goOnAfter(SubmapId newest, LandmarkId newest_landmark) {
+  if (is_open_) throw std::logic_error("Mapper: submaps are renamed between submaps");
+  id_ = newest;
+  next_landmark_ = newest_landmark + 1;
+}
+
 void Mapper::forgetSurroundings() {
   if (is_open_) throw std::logic_error("Mapper: surroundings are forgotten between submaps");
   propagation_.clear();

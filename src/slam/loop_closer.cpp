@@ -57,6 +57,18 @@ void LoopCloser::add(const Map& map) {
   checks_.push_back({false, evaluator_.add(*map.submaps().back())});
 }
 
+void LoopCloser::takeIn(const Map& map, SubmapId id) {
+  const Submap& submap = *map.submaps()[id];
+  checks_.push_back({false, evaluator_.add(submap)});
+  std::vector<Keyframe> keyframes;
+  for (const KeyframeId keyframe : map.keyframesOf(id)) {
+    if (!isSearched(keyframe)) continue;
+    keyframes.push_back(units_.toPlaces(map.keyframes()[keyframe]));
+    keyframe_of_place_.push_back(keyframe);
+  }
+  places_.process(std::move(keyframes), placePoses(map), {classHistogram(submap.landmarks, classes_.size()), false});
+}
+
 std::vector<LoopClosureRecord> LoopCloser::find(ClosureSource source, const Map& map, const ClosureQuery& query) {
   if (source == ClosureSource::kHypotheses) return closeByHypotheses(map, query);
   return source == ClosureSource::kPlace ? recognisePlaces(map, query) : revisits(map, query);

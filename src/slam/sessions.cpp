@@ -11,6 +11,19 @@ void Sessions::begin(KeyframeId next) {
   sessions_.push_back({odometry_.size(), next, {}});
 }
 
+void Sessions::append(const Sessions& other, KeyframeId first,
+                      const std::function<Pose(const Pose& T_other_base)>& T_map_other) {
+  const bool is_unused = latestOdometry() == std::nullopt && sessions_.back().fixes.empty();
+  if (is_unused) sessions_.pop_back();
+  for (Session session : other.sessions_) {
+    session.first_odometry += odometry_.size();
+    session.first_keyframe = KeyframeId(first.index() + session.first_keyframe.index());
+    for (MapFix& fix : session.fixes) fix.T_map_base = T_map_other(fix.T_map_base);
+    sessions_.push_back(std::move(session));
+  }
+  odometry_.insert(odometry_.end(), other.odometry_.begin(), other.odometry_.end());
+}
+
 std::optional<StampedPose> Sessions::latestOdometry() const {
   if (odometry_.size() == sessions_.back().first_odometry) return std::nullopt;
   return odometry_.back();

@@ -8,6 +8,7 @@
 
 #include "semantic_mht_slam/common/stopwatch.h"
 #include "semantic_mht_slam/slam/seen_again.h"
+#include "semantic_mht_slam/slam/slam_parts_state.h"
 #include "semantic_mht_slam/slam/surroundings.h"
 
 #include "newest_pose.h"
@@ -31,22 +32,6 @@ std::size_t recentSubmaps(const SlamConfig& config) {
   const SubmapConfig& submap = config.mapper.submap;
   const double recent_m = std::max<double>(config.back_end.revisit.min_driven_m, submap.propagation_m);
   return static_cast<std::size_t>(recent_m / submap.length_m) + 2;
-}
-
-SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
-  SlamParts parts{FrameAssembler(config.input),
-                  Rng(config.seed),
-                  {},
-                  Map(config.mapper.detection.keep_prob),
-                  MapGraph(config.back_end, classes),
-                  {},
-                  {},
-                  {},
-                  {},
-                  {}};
-  parts.odometry = OdometryLearning(config.mapper.odometry).model();
-  fitParts(config, classes, parts);
-  return parts;
 }
 
 /// A localizer that begins where the odometry is by its present correction.
@@ -73,6 +58,22 @@ void beginSubmap(const Frame& frame, const Pose& T_map_base, const SlamConfig& f
 }
 
 }  // namespace
+
+SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
+  SlamParts parts{FrameAssembler(config.input),
+                  Rng(config.seed),
+                  {},
+                  Map(config.mapper.detection.keep_prob),
+                  MapGraph(config.back_end, classes),
+                  {},
+                  {},
+                  {},
+                  {},
+                  {}};
+  parts.odometry = OdometryLearning(config.mapper.odometry).model();
+  fitParts(config, classes, parts);
+  return parts;
+}
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes)
     : config_(config), classes_(classes), fitted_(config), parts_(makeParts(config, classes)) {}

@@ -9,6 +9,7 @@
 #include "semantic_mht_slam/models/detection_state.h"
 #include "semantic_mht_slam/slam/drift_prior.h"
 #include "semantic_mht_slam/slam/slam.h"
+#include "semantic_mht_slam/slam/slam_parts_state.h"
 
 namespace semantic_mht_slam {
 
@@ -154,14 +155,18 @@ void restore(const SlamState& state, const KeepReading& keep_reading, const Slam
 
 }  // namespace
 
-SlamState Slam::snapshot() const {
+SlamState stateOf(const SlamConfig& fitted, const SlamParts& parts) {
   SlamState state;
   for (const Section& section : kSections) {
     StateArchive archive;
-    section.transfer(archive, fitted_, const_cast<SlamParts&>(parts_));  // a writing archive changes nothing
+    section.transfer(archive, fitted, const_cast<SlamParts&>(parts));  // a writing archive changes nothing
     state.sections.push_back({section.name, section.version, archive.written()});
   }
   return state;
+}
+
+SlamState Slam::snapshot() const {
+  return stateOf(fitted_, parts_);
 }
 
 Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state, const KeepReading& keep_reading)

@@ -48,6 +48,7 @@ struct PoseNode {
   PoseCov odometry_cov = PoseCov::Identity();         ///< integrated along the node before; not used for the first one
   SharedErrors shared_errors = SharedErrors::Zero();  ///< beside `odometry_cov`; widen the covariances of the estimate
   std::vector<LandmarkSighting> sightings;
+  std::optional<Pose> T_world_node = std::nullopt;  ///< the first estimate; empty: where the odometry leads
 };
 
 /// A place that was recognised.
@@ -144,6 +145,10 @@ class PoseGraph {
   [[nodiscard]] PoseGraphUpdate optimizeFully();
 
   int nodes() const;
+
+  /// What was added as a node (see `addNode`), with its present estimate: for a graph that takes this one in. Throws
+  /// std::out_of_range.
+  PoseNode node(int index) const;
 
   /// Poses of all nodes in the world frame.
   std::vector<Pose> poses() const;

@@ -50,6 +50,10 @@ class Mapper {
   /// Ends the submap. Only in one that has a frame, else throws std::logic_error.
   [[nodiscard]] FinishedSubmap finish();
 
+  /// The submaps and landmarks that begin from now on are named after these. Only between submaps, else throws
+  /// std::logic_error.
+  void goOnAfter(SubmapId newest, LandmarkId newest_landmark);
+
   /// Forgets where things were around the end of the last submap, as after a stretch without mapping. Only between
   /// submaps, else throws std::logic_error.
   void forgetSurroundings();

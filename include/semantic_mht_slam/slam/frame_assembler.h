@@ -66,6 +66,9 @@ class FrameAssembler {
   /// Another odometry begins: forgets the one so far and what waits for it; counts go on.
   void beginSession();
 
+  /// Frames are counted from `next` on.
+  void countFrom(std::size_t next) { next_index_ = next; }
+
   /// What waits, the odometry that is kept, and the counters (see `StateArchive`).
   void transfer(StateArchive& archive);
 

@@ -53,6 +53,9 @@ class LoopCloser {
   /// Takes the newest submap of the map in. The queries after this are about it.
   void add(const Map& map);
 
+  /// The same for a submap, the next one, that is only to be found, and whose keyframes all have their poses.
+  void takeIn(const Map& map, SubmapId submap);
+
   /// Closures of one source that were looked at; those that passed every check are verified. Of each source once a
   /// submap, in the order of `sources`: what one finds may correct the poses for the next.
   std::vector<LoopClosureRecord> find(ClosureSource source, const Map& map, const ClosureQuery& query);

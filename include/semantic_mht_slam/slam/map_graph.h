@@ -28,6 +28,10 @@ class MapGraph {
   void add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings,
            const OdometryModel& odometry);
 
+  /// A keyframe as a graph has it that took it by the other `add`, and the same for one that takes it from there.
+  PoseNode node(KeyframeId keyframe) const { return graph_.node(static_cast<int>(keyframe.index())); }
+  void add(const PoseNode& node) { graph_.addNode(node); }
+
   /// The next keyframe follows the ones before by a pose in the map, known within about a metre, not by odometry.
   void goOnAt(const Pose& T_map_odom) { T_map_odom_start_ = T_map_odom; }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,11 @@ class Sessions {
 
   /// A pose found by localization.
   void add(const MapFix& fix) { sessions_.back().fixes.push_back(fix); }
+
+  /// The sessions of another map behind these; its keyframes are numbered from `first` on, and its poses moved by
+  /// `T_map_other`.
+  void append(const Sessions& other, KeyframeId first,
+              const std::function<Pose(const Pose& T_other_base)>& T_map_other);
 
   /// The newest sample of the present session; empty before the first.
   std::optional<StampedPose> latestOdometry() const;
