@@ -14,7 +14,7 @@ LAYERS = [
     ["registration"],
     ["mapping", "place", "graph", "perception"],
     ["slam", "simulation", "io"],
-    ["evaluation"],
+    ["evaluation", "merging"],
     ["app"],
     ["ros"],
     ["programs", "nodelets", "rviz_plugins"],
