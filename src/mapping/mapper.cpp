@@ -254,6 +254,7 @@ FinishedSubmap Mapper::finish() {
   learn(fused_associations, landmarks);
   finished.frames = std::exchange(frames_, {});
   spaced_.clear();
+  stations_.clear();
   for (Frame& frame : finished.frames) frame.detections = calibrated(std::move(frame.detections));
   submap.near = findNearLandmarks(finished.frames, submap.associations, partsGate(config_));
   SideBySide seen;

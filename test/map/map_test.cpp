@@ -25,7 +25,8 @@ class MapTest : public testing::Test {
   void add(std::vector<MixtureLandmark> landmarks, std::vector<SameLandmark> duplicates = {}) {
     auto submap = std::make_shared<Submap>();
     submap->id = map_.submaps().nextId();
-    for (const MixtureLandmark& landmark : landmarks) {
+    for (MixtureLandmark& landmark : landmarks) {
+      landmark.first_submap = landmark.last_submap = submap->id;
       submap->associations.push_back({next_frame_++, 0, landmark.id});
     }
     submap->landmarks = std::move(landmarks);

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,8 @@
 
 namespace semantic_mht_slam {
 namespace {
+
+constexpr double kApart_m = 4.0;  // objects of RunningNode
 
 const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
 
@@ -37,7 +40,9 @@ class Feeder {
       const double time_s = ros::WallTime::now().toSec() - begin_s;
       node.sendOdometry(time_s);
       if (habits.sends_objects) {
-        node.sendObjects(time_s + habits.objects_offset_s, habits.class_id, 3, habits.objects_frame);
+        const double stamp_s = time_s + habits.objects_offset_s;
+        const double back_m = std::fmod(std::abs(10.0 * stamp_s), kApart_m);  // a row of objects that stands
+        node.sendObjects(stamp_s, habits.class_id, 3, habits.objects_frame, back_m);
       }
       ros::WallDuration(0.05).sleep();
     }

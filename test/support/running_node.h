@@ -64,15 +64,16 @@ class RunningNode {
     odometry_.publish(toOdometry({stampFromSeconds(kBegin_s + time_s), pose}, odom_frame, "base_link"));
   }
 
-  /// Objects of one class around the base, in the base frame if not told otherwise.
-  void sendObjects(double time_s, int class_id = kPole, std::size_t count = 3, const std::string& frame = "base_link") {
+  /// Objects of one class around the base, in the base frame if not told otherwise, `back_m` farther back.
+  void sendObjects(double time_s, int class_id = kPole, std::size_t count = 3, const std::string& frame = "base_link",
+                   double back_m = 0.0) {
     SemanticObjectArray message;
     message.header.stamp = toRosTime(stampFromSeconds(kBegin_s + time_s));
     message.header.frame_id = frame;
     for (std::size_t i = 0; i < count; ++i) {
       SemanticObject object;
       object.class_id = static_cast<std::uint16_t>(class_id);
-      object.position.x = 5.0 + 4.0 * static_cast<double>(i % 8);
+      object.position.x = 5.0 + 4.0 * static_cast<double>(i % 8) - back_m;
       object.position.y = -10.0 + 4.0 * static_cast<double>(i / 8);
       object.score = -1.0;
       message.objects.push_back(object);
