@@ -77,6 +77,36 @@ void requireFormat(const cv::FileStorage& storage, const std::string& path) {
   }
 }
 
+template <class Predicate>
+bool areAll(const cv::FileNode& nodes, const Predicate& isRight) {
+  for (const cv::FileNode node : nodes) {
+    if (!isRight(node)) return false;
+  }
+  return nodes.isSeq();
+}
+
+bool isSequence(const cv::FileNode& node, std::size_t size) {
+  return node.isSeq() && node.size() == size;
+}
+
+// What OpenCV looks up while it reads a tree, without asking whether it is there: the kinds of its variables, all of
+// them numbers (0), the label's last, and which variable each split looks at.
+void requireVariables(const cv::FileNode& tree, const std::string& path) {
+  constexpr std::size_t kVariables = kFeatures + 1;
+  const auto isNumber = [](const cv::FileNode& kind) { return kind.isInt() && static_cast<int>(kind) == 0; };
+  const auto isFeature = [](const cv::FileNode& split) {
+    const cv::FileNode variable = split["var"];
+    return variable.isInt() && static_cast<int>(variable) >= 0 && static_cast<int>(variable) < kFeatures;
+  };
+  const auto areSplitsUsable = [&](const cv::FileNode& node) {
+    return node.isMap() && (node["splits"].empty() || areAll(node["splits"], isFeature));
+  };
+  const cv::FileNode kinds = tree["var_type"];
+  const bool is_usable = tree.isMap() && isSequence(kinds, kVariables) && areAll(kinds, isNumber) &&
+                         isSequence(tree["var_idx"], kFeatures) && areAll(tree["nodes"], areSplitsUsable);
+  if (!is_usable) throw InputError(path + ": the decision tree in it is damaged");
+}
+
 double minProbOf(const cv::FileStorage& storage, const std::string& path) {
   const cv::FileNode node = storage["min_prob"];
   const double min_prob = node.isReal() || node.isInt() ? static_cast<double>(node) : -1.0;
@@ -124,6 +154,7 @@ SubmapClassifier SubmapClassifier::load(const std::string& path) {
     const cv::FileStorage storage(content, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     if (!storage.isOpened()) throw InputError(path + ": not YAML as OpenCV writes it");
     requireFormat(storage, path);
+    requireVariables(storage["tree"], path);
     auto tree = std::make_unique<Tree>();
     tree->model->read(storage["tree"]);
     if (!isUsable(*tree->model)) throw InputError(path + ": the decision tree in it is damaged");

@@ -112,6 +112,10 @@ TEST(SubmapClassifierTest, FilesWithOtherFeaturesNumbersOrTreesAreRefused) {
   expectRefused("min_prob: 0.", "min_prob: many", "min_prob");
   expectRefused("var:", "var: 7", "");
   expectRefused("value: ", "value: 3", "damaged");
+  expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: [ ]", "damaged");
+  expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: [ 0, 0, 0, 1 ]", "damaged");
+  expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: 5", "damaged");
+  expectRefused("var:", "var:9, other:", "damaged");
   expectRefused("value: ", ": ", "not a tree");
 }
 
