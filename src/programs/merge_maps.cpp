@@ -49,19 +49,9 @@ bool parse(int argc, char** argv, Arguments& arguments) {
   add("config", po::value(&arguments.config)->value_name("FILE"), "parameters that the maps were made with");
   add("set", po::value(&arguments.settings)->value_name("KEY=VALUE")->composing(),
       "changes a parameter; may be given several times");
-  add("help,h", "print this text");
   po::positional_options_description positions;
   positions.add("map", -1);
-  po::command_line_parser parser(argc, argv);
-  parser.options(options).positional(positions);
-  parser.style(po::command_line_style::unix_style & ~po::command_line_style::allow_guessing);
-  po::variables_map values;
-  po::store(parser.run(), values);
-  if (values.count("help") > 0) {
-    std::cout << kUsage << "\n" << options;
-    return false;
-  }
-  po::notify(values);
+  if (!parseOrHelp({argv + 1, argv + argc}, kUsage, options, positions)) return false;
   if (arguments.maps.size() < 2) throw InputError("at least two maps are needed");
   if (arguments.output.empty()) throw InputError("--output is needed");
   return true;

@@ -36,13 +36,14 @@ inline int runProgram(const char* name, const std::function<int()>& body) {
 
 /// Reads a command line that consists of options and puts the values into the variables that the options name, unless
 /// the option "help" is among them. Throws boost::program_options::error for anything unknown, missing or repeated;
-/// names of options must be complete.
+/// names of options must be complete. `positions` are the options whose names may be left out; an argument without its
+/// option is an error else.
 inline boost::program_options::variables_map parseCommandLine(
-    const std::vector<std::string>& arguments, const boost::program_options::options_description& options) {
+    const std::vector<std::string>& arguments, const boost::program_options::options_description& options,
+    const boost::program_options::positional_options_description& positions = {}) {
   namespace po = boost::program_options;
-  const po::positional_options_description no_positions;  // an argument without its option is an error, not ignored
   po::command_line_parser parser(arguments);
-  parser.options(options).positional(no_positions);
+  parser.options(options).positional(positions);
   parser.style(po::command_line_style::unix_style & ~po::command_line_style::allow_guessing);
   po::variables_map values;
   po::store(parser.run(), values);
@@ -52,9 +53,10 @@ inline boost::program_options::variables_map parseCommandLine(
 
 /// The same with an option --help, which is answered with `usage` and the options. False if that was asked for.
 inline bool parseOrHelp(const std::vector<std::string>& arguments, const std::string& usage,
-                        boost::program_options::options_description options) {
+                        boost::program_options::options_description options,
+                        const boost::program_options::positional_options_description& positions = {}) {
   options.add_options()("help,h", "print this text");
-  const bool is_help = parseCommandLine(arguments, options).count("help") > 0;
+  const bool is_help = parseCommandLine(arguments, options, positions).count("help") > 0;
   if (is_help) std::cout << usage << "\n" << options;
   return !is_help;
 }
