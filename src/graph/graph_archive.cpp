@@ -97,10 +97,10 @@ void transfer(StateArchive& archive, NodeState& node) {
 }
 
 void transfer(StateArchive& archive, LoopState3& loop) {
-  auto& [from, to, T_from_to, cov] = loop.constraint;
-  archive(from, to, T_from_to, cov, loop.state, loop.is_reviewed, loop.is_readmitted);
+  auto& [from, to, T_from_to, cov, is_certain] = loop.constraint;
+  archive(from, to, T_from_to, cov, is_certain, loop.state, loop.is_reviewed, loop.is_readmitted);
   archive.require(isPositive(cov) && from != to, "a loop closure whose covariance is not positive, or of one node");
-  archive.require(loop.state >= LoopState::kAccepted && loop.state <= LoopState::kDoesNotFit,
+  archive.require(loop.state >= LoopState::kAccepted && loop.state <= LoopState::kRemoved,
                   "a loop closure in a state that there is not");
   if (archive.isReading()) loop.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
 }
@@ -137,8 +137,8 @@ void LoopReview::transfer(StateArchive& archive, const GraphState& graph) {
   }
   if (!archive.isReading()) return;
   for (const LoopState3& loop : graph.loops) {
-    const auto& [from, to, T_from_to, cov] = loop.constraint;
-    loops_.push_back(makeTestedLoop<3>(from, to, T_from_to, cov));
+    const LoopConstraint& constraint = loop.constraint;
+    loops_.push_back(makeTestedLoop<3>(constraint.from, constraint.to, constraint.T_from_to, constraint.cov));
   }
 }
 

@@ -64,6 +64,19 @@ void GraphState::addSighting(const LandmarkSighting& sighting) {
       {newest, sighting.landmark, std::make_unique<PointCost<3>>(sighting.position_m, sighting.cov_m2.inverse())});
 }
 
+void GraphState::addLoop(const LoopConstraint& loop) {
+  nodes[loop.from].loops.push_back(loopCount());
+  nodes[loop.to].loops.push_back(loopCount());
+  LoopState3& state = loops.emplace_back();
+  state.constraint = loop;
+  state.cost = std::make_unique<RelativePose3Cost>(loop.T_from_to, loop.cov.inverse());
+}
+
+void GraphState::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
+  nodes[node].priors.push_back({T_world_node, cov, std::make_unique<RelativePose3Cost>(T_world_node, cov.inverse())});
+  ++priors;
+}
+
 PoseNode GraphState::node(int index) const {
   const NodeState& state = nodes.at(static_cast<std::size_t>(index));
   PoseNode node;

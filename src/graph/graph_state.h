@@ -86,8 +86,10 @@ struct GraphState {
   /// The number by which the landmark with a number is kept.
   std::int64_t keptNumber(std::int64_t landmark) const;
 
-  /// Adds a sighting by the newest node.
+  /// Adds a sighting by the newest node, a loop closure, a prior; all are sound.
   void addSighting(const LandmarkSighting& sighting);
+  void addLoop(const LoopConstraint& loop);
+  void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
 
   /// See `PoseGraph::node`.
   PoseNode node(int index) const;

@@ -111,6 +111,15 @@ void Hierarchy::linkTouched(const GraphState& graph, const LoopReview& review) {
   for (const int node : touched_) addSharedLandmarks(graph, review, node);
 }
 
+void Hierarchy::drop(const GraphState& graph, int loop) {
+  touch({graph.loops[loop].constraint.from, graph.loops[loop].constraint.to});
+  if (loop >= static_cast<int>(loop_links_.size())) return;
+  const std::optional<int> link = loop_links_[loop].link;
+  if (!link || !skeleton_.isActive(*link)) return;
+  skeleton_.setActive(*link, false);
+  is_pending_ = true;
+}
+
 std::vector<int> Hierarchy::takeTouched(const GraphState& graph) {
   const int newest = graph.nodeCount() - 1;
   std::set<int> nodes;
@@ -177,9 +186,12 @@ Skeleton::Outcome Hierarchy::solve(GraphState& graph, const LoopReview& review, 
   return outcome;
 }
 
-void Hierarchy::settle() {
-  for (LoopLink& loop : loop_links_) {
-    if (!loop.link || loop.is_settled || skeleton_.mahalanobisSq(*loop.link) > config_.loop_gate) continue;
+void Hierarchy::settle(const GraphState& graph) {
+  for (std::size_t i = 0; i < loop_links_.size(); ++i) {
+    LoopLink& loop = loop_links_[i];
+    if (!loop.link || loop.is_settled || graph.loops[i].constraint.is_certain ||
+        skeleton_.mahalanobisSq(*loop.link) > config_.loop_gate)
+      continue;
     skeleton_.setRobust(*loop.link, true);
     loop.is_settled = true;
   }

@@ -30,6 +30,9 @@ class Hierarchy {
   /// Links for touched nodes to where their landmarks, as they are now, were seen first.
   void linkTouched(const GraphState& graph, const LoopReview& review);
 
+  /// A loop closure was removed: the skeleton is solved without it, and the nodes at its ends are touched.
+  void drop(const GraphState& graph, int loop);
+
   /// The touched nodes and a few around each, ascending; none is touched any more.
   std::vector<int> takeTouched(const GraphState& graph);
 
@@ -50,7 +53,7 @@ class Hierarchy {
   double gap(const GraphState& graph, int loop) const;
 
   /// Links that fit the estimate get their robust loss; links through landmarks that are far from it are switched off.
-  void settle();
+  void settle(const GraphState& graph);
 
   /// The piece of the drive, as long as the window, that was bent most since it was last optimised in full, as a list
   /// of its nodes and a few around it; empty if all are as good as straight.

@@ -64,6 +64,7 @@ std::vector<int> LoopReview::candidates(const GraphState& graph) const {
   const int count = graph.loopCount();
   for (int i = firstOpen(graph); i < count; ++i) {
     const LoopState state = graph.loops[i].state;
+    if (graph.loops[i].constraint.is_certain) continue;
     if (state == LoopState::kAccepted || state == LoopState::kInconsistent) result.push_back(i);
   }
   return result;
@@ -74,7 +75,10 @@ void LoopReview::decide(GraphState& graph) {
   if (reviewed_ == count) return;
   for (; reviewed_ < count; ++reviewed_) {
     LoopState3& loop = graph.loops[reviewed_];
-    loop.state = fits_odometry_[reviewed_] ? LoopState::kAccepted : LoopState::kContradictsOdometry;
+    const bool is_in = fits_odometry_[reviewed_] || loop.constraint.is_certain;
+    if (loop.state != LoopState::kRemoved) {
+      loop.state = is_in ? LoopState::kAccepted : LoopState::kContradictsOdometry;
+    }
     loop.is_reviewed = true;
   }
   const std::vector<int> tested = candidates(graph);
@@ -116,7 +120,7 @@ void LoopReview::compareWithEstimate(GraphState& graph, const std::function<doub
   const int count = graph.loopCount();
   for (int i = firstOpen(graph); i < count; ++i) {
     LoopState3& loop = graph.loops[i];
-    if (!loop.is_reviewed) continue;
+    if (!loop.is_reviewed || loop.constraint.is_certain || loop.state == LoopState::kRemoved) continue;
     const double distance = gap(i);
     if (loop.state == LoopState::kAccepted) {
       if (distance <= kSwitchOffFactor * config_.loop_gate) continue;

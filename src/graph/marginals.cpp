@@ -185,8 +185,10 @@ std::optional<GraphMarginals> marginalsOf(const GraphState& graph, const PoseGra
   }
   for (const LoopState3& loop : graph.loops) {
     if (!takesPart(loop)) continue;
-    const auto& [from, to, T_from_to, cov] = loop.constraint;
-    poses.add(*loop.cost, &loop_loss, from, graph.nodes[from].block.data(), to, graph.nodes[to].block.data(),
+    const int from = loop.constraint.from;
+    const int to = loop.constraint.to;
+    const ceres::LossFunction* loss = loop.constraint.is_certain ? nullptr : &loop_loss;
+    poses.add(*loop.cost, loss, from, graph.nodes[from].block.data(), to, graph.nodes[to].block.data(),
               SharedErrors::Zero());
   }
   for (const PointInformation& point : points) addTo(poses, point);

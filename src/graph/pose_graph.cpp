@@ -30,12 +30,13 @@ class PoseGraph::Impl {
 
   int addNode(const PoseNode& node);
   int addLoopClosure(const LoopConstraint& loop);
+  void removeLoopClosure(int loop);
   void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
   void regroup(std::vector<std::vector<std::int64_t>> groups);
   std::vector<LoopDecision> decide();
   PoseGraphUpdate optimize();
   PoseGraphUpdate optimizeFully();
-  Subgraph whole(GraphState& graph) const;
+  Subgraph whole(GraphState& graph) const { return {graph, range(0, graph.nodeCount()), Surroundings::kHeld, config_}; }
   std::optional<std::vector<NodeMarginal>> coarseMarginals() const { return hierarchy_.marginals(graph_); }
   const PoseGraphConfig& config() const { return config_; }
   LoopDecision decision(int loop) const;
@@ -79,22 +80,21 @@ int PoseGraph::Impl::addLoopClosure(const LoopConstraint& loop) {
           "a loop closure joins two different nodes that exist");
   require(loop.T_from_to.isValid(), "a loop closure is not a finite pose");
   require(isCovariance6(loop.cov), "a loop closure's covariance is not positive definite");
-  const int index = graph_.loopCount();
-  LoopState3& state = graph_.loops.emplace_back();
-  state.constraint = loop;
-  state.cost = std::make_unique<RelativePose3Cost>(loop.T_from_to, loop.cov.inverse());
-  graph_.nodes[loop.from].loops.push_back(index);
-  graph_.nodes[loop.to].loops.push_back(index);
+  graph_.addLoop(loop);
   review_.add(graph_, loop);
-  return index;
+  return graph_.loopCount() - 1;
+}
+
+void PoseGraph::Impl::removeLoopClosure(int loop) {
+  require(loop >= 0 && loop < graph_.loopCount(), "there is no such loop closure");
+  graph_.loops[loop].state = LoopState::kRemoved;
+  hierarchy_.drop(graph_, loop);
 }
 
 void PoseGraph::Impl::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
   require(node >= 0 && node < graph_.nodeCount(), "a prior is for a node that exists");
   require(T_world_node.isValid() && isCovariance6(cov), "a prior is not finite or not positive definite");
-  graph_.nodes[node].priors.push_back(
-      {T_world_node, cov, std::make_unique<RelativePose3Cost>(T_world_node, cov.inverse())});
-  ++graph_.priors;
+  graph_.addPrior(node, T_world_node, cov);
 }
 
 void PoseGraph::Impl::regroup(std::vector<std::vector<std::int64_t>> groups) {
@@ -136,7 +136,7 @@ bool PoseGraph::Impl::solveGlobally(const Deadline& deadline, PoseGraphUpdate& u
     update.failure = outcome.failure;
     return false;
   }
-  if (!outcome.out_of_time) hierarchy_.settle();
+  if (!outcome.out_of_time) hierarchy_.settle(graph_);
   return true;
 }
 
@@ -181,10 +181,6 @@ void PoseGraph::Impl::closeLoops(const Deadline& deadline, PoseGraphUpdate& upda
   if (!is_solved || hierarchy_.isPending()) return;
   review_.compareWithEstimate(graph_, [this](int loop) { return hierarchy_.gap(graph_, loop); });
   solveGlobally(deadline, update);  // if that switched any loop closure
-}
-
-Subgraph PoseGraph::Impl::whole(GraphState& graph) const {
-  return Subgraph(graph, range(0, graph.nodeCount()), Surroundings::kHeld, config_);
 }
 
 PoseGraphUpdate PoseGraph::Impl::optimizeFully() {
@@ -233,6 +229,9 @@ int PoseGraph::addNode(const PoseNode& node) {
 }
 int PoseGraph::addLoopClosure(const LoopConstraint& loop) {
   return impl_->addLoopClosure(loop);
+}
+void PoseGraph::removeLoopClosure(int loop) {
+  impl_->removeLoopClosure(loop);
 }
 void PoseGraph::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
   impl_->addPrior(node, T_world_node, cov);

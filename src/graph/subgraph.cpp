@@ -115,7 +115,8 @@ void Subgraph::addNodeFactors(int node) {
     if (loop.state != LoopState::kAccepted || !loop.is_reviewed) continue;
     const int other = loop.constraint.from == node ? loop.constraint.to : loop.constraint.from;
     if (isInside(other) && other < node) continue;  // was added there
-    join(loop.cost.get(), &loop_loss_, loop.constraint.from, loop.constraint.to);
+    ceres::LossFunction* loss = loop.constraint.is_certain ? nullptr : &loop_loss_;
+    join(loop.cost.get(), loss, loop.constraint.from, loop.constraint.to);
   }
   for (const PriorFactor& prior : state.priors) {
     if (!problem_.HasParameterBlock(world_.data())) {

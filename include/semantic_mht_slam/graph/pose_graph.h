@@ -57,6 +57,7 @@ struct LoopConstraint {
   int to = 0;    ///< index of another node
   Pose T_from_to;
   PoseCov cov = PoseCov::Identity();
+  bool is_certain = false;  ///< takes part whatever speaks against it, without a robust loss
 };
 
 /// Whether a loop closure takes part, and why it does not.
@@ -65,6 +66,7 @@ enum class LoopState {
   kContradictsOdometry,  ///< further from odometry than its covariance allows
   kInconsistent,         ///< outside the largest set of recent loop closures that agree with each other
   kDoesNotFit,           ///< far from the optimised estimate
+  kRemoved,              ///< by `removeLoopClosure`
 };
 
 struct LoopDecision {
@@ -124,6 +126,10 @@ class PoseGraph {
 
   /// Adds a loop closure and returns its index. It takes part from the next `optimize` on, if it is accepted there.
   int addLoopClosure(const LoopConstraint& loop);
+
+  /// Takes a loop closure out for good; the next `optimize` solves without it. Throws std::invalid_argument for one
+  /// that there is not.
+  void removeLoopClosure(int loop);
 
   /// Adds absolute knowledge of a pose; `cov` as in `LoopConstraint` with the world as `from`.
   void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
