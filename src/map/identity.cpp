@@ -34,9 +34,9 @@ void Identity::addEdges(ClosureId closure, const std::vector<SameLandmark>& pair
 
 void Identity::decide(const std::vector<ClosureDecision>& decisions) {
   std::set<ClosureId> now = holding_;
-  for (const auto& [closure, holds] : decisions) {
-    if (holds) now.insert(closure);
-    if (!holds) now.erase(closure);
+  for (const ClosureDecision& decision : decisions) {
+    if (decision.holds) now.insert(decision.closure);
+    if (!decision.holds) now.erase(decision.closure);
   }
   if (now == holding_) return;
   const auto is_new = [&](const Edge& edge) {

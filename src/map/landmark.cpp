@@ -5,6 +5,12 @@
 
 namespace semantic_mht_slam {
 
+void LandmarkSize::add(const LandmarkSize& other) {
+  if (other.detections == 0) return;
+  detections += other.detections;
+  mean_m += (other.mean_m - mean_m) * other.detections / detections;
+}
+
 ClassIndex MixtureLandmark::mostLikelyClass() const {
   Eigen::Index best = 0;
   class_probs.maxCoeff(&best);

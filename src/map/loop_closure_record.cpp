@@ -4,7 +4,8 @@ namespace semantic_mht_slam {
 
 std::string nameOf(ClosureSource source) {
   if (source == ClosureSource::kPlace) return "place";
-  return source == ClosureSource::kHypotheses ? "hypotheses" : "revisit";
+  if (source == ClosureSource::kHypotheses) return "hypotheses";
+  return source == ClosureSource::kRevisit ? "revisit" : "request";
 }
 
 }  // namespace semantic_mht_slam

@@ -22,6 +22,7 @@ IdRange<KeyframeId> Map::add(std::shared_ptr<const Submap> submap, std::vector<K
 
 ClosureId Map::add(LoopClosureRecord closure) {
   closure.is_accepted = false;  // until it is decided
+  closure.came_after = submaps_.back()->id;
   const ClosureId id = closures_.push_back(std::move(closure));
   if (closures_[id].is_verified) identity_.add(id, closures_[id].pairs);
   return id;
@@ -38,10 +39,10 @@ void Map::apply(const GraphUpdate& update) {
   if (!update.T_map_keyframe.empty()) {
     T_map_keyframe_ = IdVector<KeyframeId, Pose>(update.T_map_keyframe);
   }
-  for (const auto& [id, holds] : update.decisions) {
-    LoopClosureRecord& closure = closures_[id];
-    closure.is_accepted = holds;
-    closure.reason = holds ? "" : "refused by the pose graph";
+  for (const ClosureDecision& decision : update.decisions) {
+    LoopClosureRecord& closure = closures_[decision.closure];
+    closure.is_accepted = decision.holds;
+    closure.reason = decision.holds ? "" : decision.reason;
   }
   identity_.decide(update.decisions);
   placeAgain(identity_.changedNames());
@@ -68,6 +69,7 @@ void Map::noteLandmarks(SubmapId submap) {
   for (const MixtureLandmark& landmark : submaps_[submap]->landmarks) {
     reach_m = std::max(reach_m, landmark.position.mean_m.norm());
     newest_submap_[landmark.id] = submap;
+    if (landmark.size.detections > 0) sizes_[landmark.id].add(landmark.size);
     names.insert(landmark.id);
   }
   reach_m_.push_back(reach_m);
@@ -110,19 +112,23 @@ const MixtureLandmark* Map::newest(LandmarkId name) const {
 MixtureLandmark Map::landmark(LandmarkId id, const LastSeen& seen) const {
   MixtureLandmark result = *newest(seen.name);
   result.id = id;
+  result.size = {};
   result.merged_ids = identity_.namesOf(id);
-  result.merged_ids.erase(result.merged_ids.begin());
-  for (const LandmarkId name : identity_.namesOf(id)) {
+  for (const LandmarkId name : result.merged_ids) {
+    const auto size = sizes_.find(name);
+    if (size != sizes_.end()) result.size.add(size->second);
     const MixtureLandmark* other = newest(name);
     if (other == nullptr || name == seen.name) continue;
     result.observations += other->observations;
     result.existence_prob = std::max(result.existence_prob, other->existence_prob);
     result.first_submap = std::min(result.first_submap, other->first_submap);
   }
+  if (const LockedLandmark* lock = corrections_.lockOf(result.merged_ids)) applyLock(*lock, seen.submap, result);
+  result.merged_ids.erase(result.merged_ids.begin());
   return result;
 }
 
-bool Map::isKept(LandmarkId landmark) const {
+bool Map::isLikely(LandmarkId landmark) const {
   const std::vector<LandmarkId> names = identity_.namesOf(landmark);
   return std::any_of(names.begin(), names.end(), [this](LandmarkId name) {
     const MixtureLandmark* known = newest(name);
@@ -130,9 +136,20 @@ bool Map::isKept(LandmarkId landmark) const {
   });
 }
 
+bool Map::isKept(LandmarkId landmark) const {
+  const std::vector<LandmarkId> names = identity_.namesOf(landmark);
+  if (!corrections_.locked().empty() && corrections_.lockOf(names) != nullptr) return true;
+  if (!isLikely(landmark)) return false;
+  if (corrections_.removed().empty()) return true;
+  const auto seen = last_seen_.find(landmark);
+  if (seen == last_seen_.end()) return !corrections_.isRemoved(names);
+  const MixtureLandmark& known = *newest(seen->second.name);
+  return !isRemoved(names, known.mostLikelyClass(), T_map_submap(seen->second.submap) * known.position.mean_m);
+}
+
 bool Map::hasLandmark(LandmarkId name) const {
   const LandmarkId id = identity_.landmarkOf(name);
-  return last_seen_.count(id) > 0 && isKept(id);
+  return last_seen_.count(id) > 0 && (isLikely(id) || corrections_.lockOf(identity_.namesOf(id)) != nullptr);
 }
 
 void Map::forEachLandmark(const Visit& visit) const {
@@ -145,7 +162,7 @@ void Map::forEachLandmarkOf(SubmapId submap,
                             const std::function<void(LandmarkId name, const MixtureLandmark& landmark)>& visit) const {
   for (const LandmarkId id : last_seen_in_[submap]) {
     const LastSeen& seen = last_seen_.at(id);
-    if (isKept(id)) visit(seen.name, landmark(id, seen));
+    if (hasLandmark(id)) visit(seen.name, landmark(id, seen));
   }
 }
 

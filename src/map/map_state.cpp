@@ -11,6 +11,8 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr int kMostSized = 1 << 24;  // whose sums over submaps are numbers
+
 bool areEqual(const Gaussian3& a, const Gaussian3& b) {
   return a.mean_m == b.mean_m && a.cov_m2 == b.cov_m2;
 }
@@ -85,8 +87,8 @@ void transfer(StateArchive& archive, MixtureComponent& component) {
 }
 
 void transfer(StateArchive& archive, MixtureLandmark& landmark) {
-  auto& [id, components, position, class_probs, existence_prob, observations, first_submap, last_submap, merged_ids] =
-      landmark;
+  auto& [id, components, position, class_probs, existence_prob, observations, first_submap, last_submap, merged_ids,
+         size, is_locked] = landmark;
   archive(id, components);
   // A landmark that nobody disputes has one component, which is all that is known of its place.
   bool is_as_component = components.size() == 1 && areEqual(components.front().position, position);
@@ -96,7 +98,11 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
     if (components.empty()) StateArchive::fail("a landmark without a place");
     position = components.front().position;
   }
-  archive(class_probs, existence_prob, observations, first_submap, last_submap, merged_ids);
+  archive(class_probs, existence_prob, observations, first_submap, last_submap, merged_ids, is_locked);
+  archive(size.detections);
+  if (size.detections > 0) archive(size.mean_m);
+  archive.require(size.detections >= 0 && size.detections <= kMostSized && (size.mean_m.array() >= 0.0).all(),
+                  "a landmark of a negative size");
   archive.requireName(id);
   archive.requireClassCount(class_probs.size());
   archive.require(!components.empty(), "a landmark without a place");
@@ -163,12 +169,12 @@ void transfer(StateArchive& archive, Keyframe& keyframe) {
 /// Of closures that never were in the pose graph only what people look at is kept.
 void transfer(StateArchive& archive, LoopClosureRecord& closure) {
   auto& [source, query_keyframe, match_keyframe, is_verified, is_accepted, reason, score, place, inliers, T_match_query,
-         cov, pairs] = closure;
+         cov, came_after, pairs] = closure;
   auto& [histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob] = place;
   archive(source, query_keyframe, match_keyframe, is_verified, is_accepted, reason, score, inliers, T_match_query);
-  archive(histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob);
+  archive(came_after, histogram_divergence, descriptor_score, topology_score, scene_score, loop_prob);
   if (is_verified) archive(cov, pairs);
-  archive.require(source >= ClosureSource::kPlace && source <= ClosureSource::kRevisit, "a source that there is not");
+  archive.require(source >= ClosureSource::kPlace && source <= ClosureSource::kRequest, "a source that there is not");
   archive.require(inliers >= 0 && isNotNegative(cov), "a closure whose covariance is not positive");
   archive.require(is_verified || !is_accepted, "a closure that holds without a check");
   requirePairs(archive, pairs);
@@ -186,7 +192,7 @@ void Map::transferSubmaps(StateArchive& archive) {
 }
 
 void Map::transferKeyframes(StateArchive& archive, int classes, double scene_floor_m) {
-  archive(keyframes_, T_map_keyframe_, first_keyframe_, closures_, identity_, scene_floor_m);
+  archive(keyframes_, T_map_keyframe_, first_keyframe_, closures_, identity_, scene_floor_m, corrections_);
   if (T_map_keyframe_.size() != keyframes_.size()) StateArchive::fail("a keyframe without a pose");
   if (first_keyframe_.size() != submaps_.size()) StateArchive::fail("a submap without keyframes");
   requireKeyframesOfSubmaps(archive);
@@ -203,10 +209,11 @@ void Map::transferKeyframes(StateArchive& archive, int classes, double scene_flo
   for (const LoopClosureRecord& closure : closures_) {
     require(closure.query_keyframe, keyframes_);
     require(closure.match_keyframe, keyframes_);
-    const SubmapId submap = keyframes_[closure.query_keyframe].submap;
-    archive.require(submap >= newest && closure.query_keyframe != closure.match_keyframe,
+    require(closure.came_after, submaps_);
+    archive.require(closure.came_after >= newest && closure.query_keyframe != closure.match_keyframe &&
+                        keyframes_[closure.query_keyframe].submap <= closure.came_after,
                     "closures that are not in order");
-    newest = submap;
+    newest = closure.came_after;
   }
   for (const IdentityEvent& event : identity_.ledger()) {
     require(event.submap, submaps_);
@@ -214,6 +221,8 @@ void Map::transferKeyframes(StateArchive& archive, int classes, double scene_flo
     archive.requireName(event.a);
     archive.requireName(event.b);
   }
+  for (const RemovedLandmark& removed : corrections_.removed()) require(removed.submap, submaps_);
+  for (const LockedLandmark& locked : corrections_.locked()) require(locked.landmark.last_submap, submaps_);
   restore();
 }
 
@@ -241,7 +250,7 @@ void Map::restore() {
   for (const ClosureId id : closures_.ids()) {
     const LoopClosureRecord& closure = closures_[id];
     if (!closure.is_verified) continue;
-    sayings.push_back({keyframes_[closure.query_keyframe].submap, {id, closure.is_accepted}, &closure.pairs});
+    sayings.push_back({closure.came_after, {id, closure.is_accepted}, &closure.pairs});
   }
   identity_.restore(submaps_, sayings);
   for (const SubmapId submap : submaps_.ids()) noteLandmarks(submap);

@@ -48,6 +48,22 @@ class Renaming {
     return submap;
   }
 
+  LandmarkCorrections operator()(const LandmarkCorrections& corrections) const {
+    LandmarkCorrections result;
+    for (RemovedLandmark removed : corrections.removed()) {
+      for (LandmarkId& name : removed.names) name = (*this)(name);
+      removed.newest_name = (*this)(removed.newest_name);
+      removed.submap = (*this)(removed.submap);
+      result.remove(std::move(removed));
+    }
+    for (LockedLandmark locked : corrections.locked()) {
+      for (LandmarkId& name : locked.names) name = (*this)(name);
+      apply(locked.landmark);
+      result.lock(std::move(locked));
+    }
+    return result;
+  }
+
   Keyframe operator()(Keyframe keyframe, const Motion& before) const {
     keyframe.frame += frames_;
     keyframe.submap = (*this)(keyframe.submap);
@@ -130,6 +146,7 @@ class Joining {
         joined.add(std::move(*closure));
       }
     }
+    joined.addCorrections(rename(map.corrections()));
     frames_ += framesOf(map);
     landmarks_ += newestLandmark(map);
     driven_ = motionTo(joined.keyframes().back());

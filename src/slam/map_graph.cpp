@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 
 #include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/models/dead_reckoning.h"
@@ -64,6 +65,12 @@ PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sight
   return node;
 }
 
+void MapGraph::removeClosure(ClosureId closure) {
+  const auto factor = std::find(closure_of_factor_.begin(), closure_of_factor_.end(), closure);
+  if (factor == closure_of_factor_.end()) throw std::invalid_argument("MapGraph: no closure of this graph");
+  graph_.removeLoopClosure(static_cast<int>(factor - closure_of_factor_.begin()));
+}
+
 GraphUpdate MapGraph::review(const Map& map) {
   for (const ClosureId id : map.closures().idsFrom(next_closure_)) {
     const LoopClosureRecord& closure = map.closures()[id];
@@ -75,6 +82,7 @@ GraphUpdate MapGraph::review(const Map& map) {
     loop.cov = config_.loop_cov_scale * closure.cov;
     loop.cov.diagonal().head<3>().array() += config_.loop_floor_m * config_.loop_floor_m;
     loop.cov.diagonal().tail<3>().array() += config_.loop_floor_rad * config_.loop_floor_rad;
+    loop.is_certain = closure.source == ClosureSource::kRequest;
     graph_.addLoopClosure(loop);
     closure_of_factor_.push_back(id);
   }
@@ -113,6 +121,7 @@ std::vector<ClosureDecision> MapGraph::decisionsOf(const std::vector<LoopDecisio
   std::vector<ClosureDecision> result;
   for (const LoopDecision& decision : decisions) {
     result.push_back({closure_of_factor_[decision.loop], decision.state == LoopState::kAccepted});
+    if (decision.state == LoopState::kRemoved) result.back().reason = "removed by request";
   }
   return result;
 }

@@ -16,9 +16,12 @@ struct Passes {
   std::vector<MixtureLandmark> earlier;  ///< not seen by it
 };
 
-Passes passesOf(const Map& map, const MapGraph& graph, const ClassTable& classes, std::size_t recent_submaps,
-                double pair_distance_m) {
-  const auto is_recent = [&](SubmapId submap) { return submap.index() + recent_submaps >= map.submaps().size(); };
+Passes passesOf(const Map& map, const MapGraph& graph, const ClassTable& classes, SubmapId here,
+                std::size_t recent_submaps, double pair_distance_m) {
+  const auto is_earlier = [&](SubmapId submap) { return submap.index() + recent_submaps <= here.index(); };
+  const auto is_present = [&](SubmapId submap) {
+    return !is_earlier(submap) && submap.index() < here.index() + recent_submaps;
+  };
   const auto visit = [&](SubmapId submap, const auto& take) {
     map.forEachLandmarkOf(submap, [&](LandmarkId, const MixtureLandmark& seen) {
       if (classes[seen.mostLikelyClass()].is_static) take(inMap(map, graph, submap, seen));
@@ -26,15 +29,13 @@ Passes passesOf(const Map& map, const MapGraph& graph, const ClassTable& classes
   };
   Passes passes;
   std::vector<SubmapId> earlier;
-  double reach_m = 0.0;  // from the newest submap
-  const Eigen::Vector3d here_m = map.T_map_submap(map.submaps().back()->id).translation_m;
+  double reach_m = 0.0;
+  const Eigen::Vector3d here_m = map.T_map_submap(here).translation_m;
   for (const SubmapId submap : map.submaps().ids()) {
-    if (!is_recent(submap)) {
-      earlier.push_back(submap);
-      continue;
-    }
+    if (is_earlier(submap)) earlier.push_back(submap);
+    if (!is_present(submap)) continue;
     visit(submap, [&](MixtureLandmark landmark) {
-      if (!is_recent(landmark.first_submap)) return;
+      if (is_earlier(landmark.first_submap)) return;
       reach_m = std::max(reach_m, (landmark.position.mean_m - here_m).norm());
       passes.present.push_back(std::move(landmark));
     });
@@ -69,7 +70,8 @@ const MixtureLandmark* onlyMatch(const MixtureLandmark& landmark, const std::vec
 std::vector<SameLandmark> landmarksSeenAgain(const Map& map, const MapGraph& graph, const ClassTable& classes,
                                              const LoopClosureRecord& tie, std::size_t recent_submaps,
                                              double pair_distance_m) {
-  const Passes passes = passesOf(map, graph, classes, recent_submaps, pair_distance_m);
+  const SubmapId here = map.keyframes()[tie.query_keyframe].submap;
+  const Passes passes = passesOf(map, graph, classes, here, recent_submaps, pair_distance_m);
   const Eigen::Matrix3d R = map.T_map_keyframe(tie.query_keyframe).rotation.toRotationMatrix();
   const Eigen::Matrix3d tie_cov_m2 = R * tie.cov.topLeftCorner<3, 3>() * R.transpose();
   std::vector<SameLandmark> pairs;

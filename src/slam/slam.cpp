@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/stopwatch.h"
+#include "semantic_mht_slam/mapping/landmark_sizes.h"
 #include "semantic_mht_slam/slam/seen_again.h"
 #include "semantic_mht_slam/slam/slam_parts_state.h"
 #include "semantic_mht_slam/slam/surroundings.h"
 
 #include "newest_pose.h"
+#include "recent_submaps.h"
 
 namespace semantic_mht_slam {
 
@@ -26,13 +28,6 @@ constexpr double kFollowed = 1.0 / 3.0;
 constexpr double kSamePlace = 1.0 / 6.0;
 
 constexpr double kMaxPause_s = 60.0;
-
-/// Submaps whose landmarks the mapper itself may carry on into the present one.
-std::size_t recentSubmaps(const SlamConfig& config) {
-  const SubmapConfig& submap = config.mapper.submap;
-  const double recent_m = std::max<double>(config.back_end.revisit.min_driven_m, submap.propagation_m);
-  return static_cast<std::size_t>(recent_m / submap.length_m) + 2;
-}
 
 /// A localizer that begins where the odometry is by its present correction.
 Localizer localizerHere(const Pose& T_map_odom, const SlamConfig& fitted) {
@@ -154,6 +149,7 @@ void Slam::endSubmap() {
   if (!parts_.mapper || !parts_.mapper->isOpen()) return;
   const Stopwatch watch;
   FinishedSubmap finished = parts_.mapper->finish();
+  noteSizes(finished.frames, finished.submap);
   parts_.mapping_s += watch.elapsed_s();
   Map& map = parts_.map;
   const OdometryModel& odometry = parts_.odometry = parts_.mapper->odometryModel();

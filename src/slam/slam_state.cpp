@@ -126,8 +126,8 @@ struct Section {
 };
 
 constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 4, transferInput},
-                                 {"submaps", 2, transferSubmaps},   {"keyframes", 3, transferKeyframes},
-                                 {"graph", 3, transferGraph},       {"hypotheses", 6, transferMapper}};
+                                 {"submaps", 3, transferSubmaps},   {"keyframes", 4, transferKeyframes},
+                                 {"graph", 4, transferGraph},       {"hypotheses", 7, transferMapper}};
 
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
 void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,

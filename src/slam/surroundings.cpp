@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/slam/surroundings.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace semantic_mht_slam {
 namespace {
@@ -11,6 +12,7 @@ constexpr double kGraphShift = 1.0 / 6.0;  // of the reach: as far as the graph 
 
 MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, const MixtureLandmark& seen) {
   MixtureLandmark landmark = transformed(map.T_map_submap(submap), seen);
+  if (landmark.is_locked) return landmark;
   const std::optional<Eigen::Vector3d> position_m = graph.landmark(landmark.id);
   if (!position_m) return landmark;
   const Eigen::Vector3d shift_m = *position_m - landmark.position.mean_m;
@@ -35,7 +37,7 @@ std::vector<MixtureLandmark> landmarksOf(const Map& map, const MapGraph& graph, 
     const Eigen::Vector3d lever_m = landmark.position.mean_m - map.T_map_keyframe(from).translation_m;
     addPoseShare(uncertainty.keyframes[from], lever_m, graph.sightingFloor_m(), landmark);
     const auto known = uncertainty.landmarks.find(graph.keptName(landmark.id));
-    if (known == uncertainty.landmarks.end()) return;
+    if (known == uncertainty.landmarks.end() || landmark.is_locked) return;
     landmark.position.cov_m2 = known->second;
     if (landmark.components.size() == 1) landmark.components.front().position.cov_m2 = known->second;
   });
@@ -47,7 +49,9 @@ std::vector<MixtureLandmark> landmarksBeyond(const Map& map, const std::vector<M
   std::vector<MixtureLandmark> landmarks;
   for (const MixtureLandmark& landmark : seen) {
     if (landmark.existence_prob < map.keepProb() || map.hasLandmark(landmark.id)) continue;
-    landmarks.push_back(transformed(T_map_submap, landmark));
+    MixtureLandmark in_map = transformed(T_map_submap, landmark);
+    if (map.isRemoved({in_map.id}, in_map.mostLikelyClass(), in_map.position.mean_m)) continue;
+    landmarks.push_back(std::move(in_map));
   }
   return landmarks;
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "semantic_mht_slam/map/side_by_side.h"
@@ -31,6 +32,7 @@ struct IdentityEvent {
 struct ClosureDecision {
   ClosureId closure;
   bool holds = false;
+  std::string reason = "refused by the pose graph";  ///< if it does not
 };
 
 /// Which names mean one landmark. A name is the id that the mapper gave a landmark when it saw it first. Loop closures
@@ -70,7 +72,7 @@ class Identity {
   void transfer(StateArchive& archive);
 
   /// Instead of the calls that led to it: what `submaps` and `closures` (those that were verified, by rising id, each
-  /// with the submap that it belongs to) say, and which of them hold.
+  /// with the submap that it came after) say, and which of them hold.
   struct Saying {
     SubmapId submap;
     ClosureDecision decision;

@@ -28,6 +28,14 @@ struct MixtureComponent {
   Gaussian3 position;
 };
 
+/// Extents of an object, mean of what a detector said of it: along the axes of the base at the time.
+struct LandmarkSize {
+  Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  int detections = 0;  ///< that said it; 0: not known
+
+  void add(const LandmarkSize& other);
+};
+
 /// A landmark with all that the hypotheses say of it: the fused result of a hypothesis tree (paper, section III).
 struct MixtureLandmark {
   LandmarkId id = kNoLandmark;
@@ -39,6 +47,8 @@ struct MixtureLandmark {
   SubmapId first_submap;
   SubmapId last_submap;                ///< that saw it
   std::vector<LandmarkId> merged_ids;  ///< other names of it, rising
+  LandmarkSize size;                   ///< as its last submap saw it; in a `Map`, as all did
+  bool is_locked = false;              ///< a person said that it stays as it is
 
   ClassIndex mostLikelyClass() const;
   bool isUndecided() const { return components.size() > 1; }

@@ -15,10 +15,11 @@ namespace semantic_mht_slam {
 enum class ClosureSource {
   kPlace,       ///< recognised by its objects alone
   kHypotheses,  ///< agreed on by the hypotheses of a submap
-  kRevisit      ///< laid onto the earlier map near the present pose
+  kRevisit,     ///< laid onto the earlier map near the present pose
+  kRequest      ///< said by a person: holds whatever speaks against it
 };
 
-/// Name for files: `place`, `hypotheses` or `revisit`.
+/// Name for files: `place`, `hypotheses`, `revisit` or `request`.
 std::string nameOf(ClosureSource source);
 
 /// What place recognition knows of a candidate; unknown: as below.
@@ -43,6 +44,7 @@ struct LoopClosureRecord {
   int inliers = 0;           ///< landmark pairs that agree
   Pose T_match_query;
   PoseCov cov = PoseCov::Identity();                     ///< of T_match_query
+  SubmapId came_after;                                   ///< the newest submap when it came; set by the map
   std::vector<std::pair<LandmarkId, LandmarkId>> pairs;  ///< landmark of the query, the same one before
 };
 

@@ -3,13 +3,16 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/map/identity.h"
 #include "semantic_mht_slam/map/ids.h"
 #include "semantic_mht_slam/map/keyframe.h"
+#include "semantic_mht_slam/map/landmark_corrections.h"
 #include "semantic_mht_slam/map/loop_closure_record.h"
 #include "semantic_mht_slam/map/submap.h"
 
@@ -68,12 +71,37 @@ class Map {
   /// its frame; counts and existence are those of all its names.
   void forEachLandmark(const Visit& visit) const;
 
-  /// The same for the landmarks that one submap saw last; `name` is what that submap calls it.
+  /// The same for the landmarks that one submap saw last, those that were removed among them: they are to be
+  /// recognised; `name` is what that submap calls it.
   void forEachLandmarkOf(SubmapId submap,
                          const std::function<void(LandmarkId name, const MixtureLandmark& landmark)>& visit) const;
 
-  /// True if a name is that of a landmark of the map.
+  /// True if a name is that of a landmark of the map, or of one that was removed from it.
   bool hasLandmark(LandmarkId name) const;
+
+  /// The landmark that a name means, as `forEachLandmark` shows it, with the submap whose frame it is in; empty if it
+  /// is no part of the map.
+  std::optional<std::pair<SubmapId, MixtureLandmark>> find(LandmarkId name) const;
+
+  /// Takes a landmark of the map out: by all its names, and by its place (map frame) for what is seen later and is not
+  /// recognised as it.
+  void removeLandmark(LandmarkId landmark, const Eigen::Vector3d& position_m, double radius_m);
+
+  /// Brings a landmark back that was removed; false if that name was not.
+  bool bringBackLandmark(LandmarkId name);
+
+  /// From now on a landmark has the place (map frame), class and size that it has here, whatever is seen; it moves with
+  /// the submap that saw it last.
+  void lockLandmark(const MixtureLandmark& landmark);
+  bool unlockLandmark(LandmarkId name);
+
+  /// True if a landmark with these names (rising) at this place (map frame) is one that was removed.
+  bool isRemoved(const std::vector<LandmarkId>& names, ClassIndex class_index, const Eigen::Vector3d& position_m) const;
+
+  const LandmarkCorrections& corrections() const { return corrections_; }
+
+  /// What a person said of the landmarks of another map that was put into this one, already by the names of this one.
+  void addCorrections(const LandmarkCorrections& other);
 
   /// Least existence probability of a landmark of the map.
   double keepProb() const { return keep_prob_; }
@@ -104,6 +132,8 @@ class Map {
   void place(LandmarkId landmark);
   const MixtureLandmark* newest(LandmarkId name) const;
   MixtureLandmark landmark(LandmarkId id, const LastSeen& seen) const;
+  void applyLock(const LockedLandmark& lock, SubmapId submap, MixtureLandmark& landmark) const;
+  bool isLikely(LandmarkId landmark) const;
   bool isKept(LandmarkId landmark) const;
   void requireKeyframesOfSubmaps(const StateArchive& archive) const;
   void restore();
@@ -116,7 +146,9 @@ class Map {
   IdVector<KeyframeId, Pose> T_map_keyframe_;
   IdVector<ClosureId, LoopClosureRecord> closures_;
   Identity identity_;
+  LandmarkCorrections corrections_;
   std::map<LandmarkId, SubmapId> newest_submap_;           ///< with a landmark of a name
+  std::map<LandmarkId, LandmarkSize> sizes_;               ///< by name
   std::map<LandmarkId, LastSeen> last_seen_;               ///< by landmark
   IdVector<SubmapId, std::set<LandmarkId>> last_seen_in_;  ///< landmarks, by submap
 };

@@ -39,6 +39,10 @@ class MapGraph {
   /// with each other.
   [[nodiscard]] GraphUpdate review(const Map& map);
 
+  /// Takes a closure out for good; the next `review` says so. Throws std::invalid_argument for one that no `review`
+  /// took.
+  void removeClosure(ClosureId closure);
+
   /// Makes one point of the names of each landmark that has `changed` (see `Map::takeChanges`), and solves.
   [[nodiscard]] GraphUpdate optimize(const std::vector<std::vector<LandmarkId>>& changed);
 

@@ -56,6 +56,14 @@ void describe(SlamConfig& config, Fields& fields);
 /// error of its heading.
 SlamConfig fittedTo(const SlamConfig& config, double range_factor);
 
+/// What a person says of two poses of the trajectory.
+struct RequestedClosure {
+  Stamp query = 0;
+  Stamp match = 0;  ///< of the earlier pose
+  Pose T_match_query;
+  FixedAxesCov cov = FixedAxesCov::Zero();  ///< of it; zero: half a metre and 3 degrees
+};
+
 /// What the estimator is made of, all of which outlives a program in a map file.
 struct SlamParts {
   FrameAssembler assembler;
@@ -127,6 +135,28 @@ class Slam {
   /// is lost until it finds itself in the map. Without any finished submap it just begins to map.
   void beginSession();
 
+  // What a person knows better. Each of these ends the current submap, so that what it saw is in the map. They throw
+  // InputError, and change nothing else, for what there is not in the map.
+
+  /// Takes a landmark, by any of its names, out of the map: it stays out when it is seen again, and when the map is
+  /// saved and loaded.
+  void removeLandmark(LandmarkId name);
+
+  /// Brings back what `removeLandmark` took.
+  void bringBackLandmark(LandmarkId name);
+
+  /// Keeps a landmark as it is: it exists, and its place, class and size stay, whatever is seen. Its place moves with
+  /// the submap that saw it last when the map is corrected.
+  void lockLandmark(LandmarkId name);
+  void unlockLandmark(LandmarkId name);
+
+  /// Ties two places of the trajectory together, whatever odometry and other closures say; landmarks of both that then
+  /// stand at the same place become one.
+  ClosureId addClosure(const RequestedClosure& closure);
+
+  /// Takes a closure that holds back, with everything that it merged.
+  void removeClosure(ClosureId closure);
+
   /// Where the base is in the map, from outside, within about `stddev_m`: ends being lost. Has no effect while mapping
   /// or before any odometry; true if it had one.
   bool expectAt(const Pose& T_map_base, double stddev_m);
@@ -146,6 +176,8 @@ class Slam {
   void follow(const Frame& frame);
   void endSubmap();
   void enter(Mode mode);
+  MixtureLandmark requireLandmark(LandmarkId name);
+  void settleRequest();
 
   SlamConfig config_;
   ClassTable classes_;

@@ -15,7 +15,8 @@ namespace semantic_mht_slam {
 void addPoseShare(const FixedAxesCov& pose_cov, const Eigen::Vector3d& lever_m, double floor_m,
                   MixtureLandmark& landmark);
 
-/// A landmark of a submap in the map frame; those of the pose graph stand where the graph has them.
+/// A landmark of a submap in the map frame; those of the pose graph stand where the graph has them, if they are not
+/// locked.
 MixtureLandmark inMap(const Map& map, const MapGraph& graph, SubmapId submap, const MixtureLandmark& seen);
 
 /// The landmarks of a map at their corrected places, map frame, by rising id; their covariances hold what is not known
