@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "semantic_mht_slam/app/landmark_files.h"
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
@@ -82,17 +83,6 @@ std::string upperNames() {
 std::string formatCovariances(const std::vector<FixedAxesCov>& covs) {
   std::string text = "row" + upperNames() + "\n";
   for (std::size_t row = 0; row < covs.size(); ++row) text += std::to_string(row) + formatUpper(covs[row]) + "\n";
-  return text;
-}
-
-std::string formatLandmarks(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes) {
-  std::string text = "id,class,x,y,z,existence,observations,sxx,sxy,sxz,syy,syz,szz\n";
-  for (const MixtureLandmark& landmark : landmarks) {
-    text += std::to_string(landmark.id) + "," + classes[landmark.mostLikelyClass()].name;
-    for (int i = 0; i < 3; ++i) text += "," + formatFixed(landmark.position.mean_m[i], 4);
-    text += "," + formatFixed(landmark.existence_prob, 6) + "," + std::to_string(landmark.observations) +
-            formatUpper(landmark.position.cov_m2) + "\n";
-  }
   return text;
 }
 
@@ -264,7 +254,7 @@ void writeResultFiles(const std::string& folder, const Recording& recording, con
   writeFileAtomically(folder + "/trajectory_online_cov.csv", formatCovariances(result.online_trajectory_cov));
   writeFileAtomically(folder + "/loop_closures.csv", formatLoopClosures(result.loop_closures));
   writeFileAtomically(folder + "/submaps.csv", formatSubmaps(result.submap_checks));
-  writeFileAtomically(folder + "/landmarks.csv", formatLandmarks(result.landmarks, classes));
+  writeFileAtomically(folder + "/landmarks.csv", landmarksCsv(result.landmarks, classes));
   writeFileAtomically(folder + "/associations.csv", formatAssociations(result.associations));
   writeFileAtomically(folder + "/config.yaml", toYaml(config));
 }

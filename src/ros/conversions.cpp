@@ -172,6 +172,10 @@ Landmark toMessage(const MixtureLandmark& landmark, const ClassTable& classes) {
   message.first_submap = static_cast<std::uint32_t>(landmark.first_submap.index());
   message.last_submap = static_cast<std::uint32_t>(landmark.last_submap.index());
   message.merged_ids = landmark.merged_ids;
+  message.size.x = landmark.size.mean_m.x();
+  message.size.y = landmark.size.mean_m.y();
+  message.size.z = landmark.size.mean_m.z();
+  message.locked = landmark.is_locked;
   return message;
 }
 

@@ -56,10 +56,12 @@ geometry_msgs::Point toPoint(const Eigen::Vector3d& point_m) {
   return point;
 }
 
-LoopClosure toMessage(const Map& map, const LoopClosureRecord& record, const std::string& map_frame) {
+LoopClosure toMessage(const Map& map, ClosureId id, const std::string& map_frame) {
+  const LoopClosureRecord& record = map.closures()[id];
   const Keyframe& query = map.keyframes()[record.query_keyframe];
   const Keyframe& match = map.keyframes()[record.match_keyframe];
   LoopClosure message;
+  message.id = static_cast<std::uint32_t>(id.index());
   message.header.stamp = toRosTime(query.stamp);
   message.header.frame_id = map_frame;
   message.query_submap = static_cast<std::uint32_t>(query.submap.index());
@@ -124,7 +126,7 @@ std::vector<ClosureId> ClosureNews::takeNews(const Map& map) {
 std::vector<LoopClosure> toLoopClosures(const Map& map, const std::vector<ClosureId>& closures,
                                         const std::string& map_frame) {
   std::vector<LoopClosure> messages;
-  for (const ClosureId id : closures) messages.push_back(toMessage(map, map.closures()[id], map_frame));
+  for (const ClosureId id : closures) messages.push_back(toMessage(map, id, map_frame));
   return messages;
 }
 

@@ -29,22 +29,33 @@ fs::path resolved(const fs::path& path) {
   return result.has_filename() ? result : result.parent_path();  // without a slash at the end
 }
 
-}  // namespace
-
-std::string mapPath(const std::string& asked, const std::string& map_folder) {
+/// The asked path, absolute, if it is inside of `map_folder`.
+fs::path insidePath(const std::string& asked, const std::string& map_folder) {
   if (asked.empty()) throw InputError("the path is empty");
   const fs::path folder = withHome(map_folder);
   const fs::path given = withHome(asked);
   const fs::path path = fs::absolute(given.is_absolute() ? given : folder / given).lexically_normal();
-  if (!path.has_filename()) throw InputError("'" + path.string() + "' names a folder, not a file");
-  if (folder.empty()) return path.string();
+  if (folder.empty()) return path;
   const fs::path inside = resolved(path);
   const fs::path root = resolved(folder);
   if (std::mismatch(root.begin(), root.end(), inside.begin(), inside.end()).first != root.end()) {
     throw InputError("'" + path.string() + "' is outside of '" + root.string() +
-                     "' (node/map_folder), where maps are read and written");
+                     "' (node/map_folder), where files are read and written");
   }
+  return path;
+}
+
+}  // namespace
+
+std::string mapPath(const std::string& asked, const std::string& map_folder) {
+  const fs::path path = insidePath(asked, map_folder);
+  if (!path.has_filename()) throw InputError("'" + path.string() + "' names a folder, not a file");
   return path.string();
+}
+
+std::string resultsPath(const std::string& asked, const std::string& map_folder) {
+  const fs::path path = insidePath(asked, map_folder);
+  return (path.has_filename() ? path : path.parent_path()).string();
 }
 
 }  // namespace semantic_mht_slam

@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/ros/markers.h"
 
+#include <algorithm>
 #include <map>
 
 #include <Eigen/Eigenvalues>
@@ -57,6 +58,7 @@ class LandmarkDrawing {
     for (const GaussianComponent& component : landmark.components) {
       addEllipsoid(component, landmark.provisional ? kProvisionalOpacity : 1.0, info);
     }
+    addBody(landmark, info);
     if (landmark.undecided) addAlternatives(landmark);
     if (live_.landmark_labels) addLabel(landmark, info);
   }
@@ -106,6 +108,18 @@ class LandmarkDrawing {
     dots.colors.push_back(color);
   }
 
+  /// A cylinder as large as the object, whose heading nobody knows; none where the symbol would hide it.
+  void addBody(const Landmark& landmark, const ClassInfo& info) {
+    const double across_m = 0.5 * (landmark.size.x + landmark.size.y);
+    if (std::max(across_m, landmark.size.z) <= kLandmark * symbol_m_) return;
+    visualization_msgs::Marker& marker = push("sizes", visualization_msgs::Marker::CYLINDER);
+    marker.pose.position = landmark.position;
+    marker.scale.x = marker.scale.y = std::max(across_m, kThinnest * symbol_m_);
+    marker.scale.z = std::max(landmark.size.z, kThinnest * symbol_m_);
+    marker.color = toColor(info);
+    marker.color.a = kBodyOpacity;
+  }
+
   void addAlternatives(const Landmark& landmark) {
     visualization_msgs::Marker& marker = push("undecided", visualization_msgs::Marker::LINE_LIST);
     marker.scale.x = 0.3 * symbol_m_;
@@ -131,6 +145,8 @@ class LandmarkDrawing {
 
   static constexpr double kLandmark = 2.0;  // symbols; smaller ones could not be seen or clicked
   static constexpr double kProvisionalOpacity = 0.5;
+  static constexpr float kBodyOpacity = 0.3F;
+  static constexpr double kThinnest = 0.1;  // symbols
 
   const ClassTable& classes_;
   double symbol_m_;

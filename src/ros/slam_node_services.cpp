@@ -49,6 +49,7 @@ void SlamNode::advertiseServices() {
   services_.push_back(handle.advertiseService("save_map", &SlamNode::saveMap, this));
   services_.push_back(handle.advertiseService("load_map", &SlamNode::loadMap, this));
   services_.push_back(handle.advertiseService("set_mode", &SlamNode::setMode, this));
+  advertiseRequests(handle);
 }
 
 std::unique_lock<TicketMutex> SlamNode::lockCaughtUp() {
@@ -68,15 +69,6 @@ void SlamNode::waitForSubscribers() {
   while (coming.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
     if (is_closing_ || !ros::ok()) return;
   }
-}
-
-template <class Response, class Body>
-bool SlamNode::answer(const std::string& service, Response& response, const Body& body) {
-  if (!other_failures_.run(service, body)) {
-    response.success = false;
-    response.message = "unexpected failure of " + other_failures_.status().newest;
-  }
-  return true;
 }
 
 bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

@@ -59,6 +59,22 @@ TEST(LandmarkMarkersTest, LargeOnesAreEllipsoidsOfTheChosenSize) {
   EXPECT_NEAR(std::min({marker.scale.x, marker.scale.y, marker.scale.z}), 2.0 * 3.0 * 1.0, 1e-9);
 }
 
+TEST(LandmarkMarkersTest, ObjectsOfAKnownSizeHaveABodyUnlessTheSymbolHidesIt) {
+  SemanticMap map = makeMap();
+  map.landmarks.resize(1);
+  map.landmarks[0].size.x = 1.0;
+  map.landmarks[0].size.y = 3.0;
+  map.landmarks[0].size.z = 5.0;
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(map, makeTwoClasses(), 1.0, {});
+  ASSERT_EQ(namespaces(array).count("sizes"), 1U);
+  const visualization_msgs::Marker& body = array.markers[1];
+  EXPECT_EQ(body.type, visualization_msgs::Marker::CYLINDER);
+  EXPECT_EQ(body.scale.x, 2.0) << "its heading is not known";
+  EXPECT_EQ(body.scale.y, 2.0);
+  EXPECT_EQ(body.scale.z, 5.0);
+  EXPECT_EQ(namespaces(toLandmarkMarkers(map, makeTwoClasses(), 10.0, {})).count("sizes"), 0U);
+}
+
 TEST(LandmarkMarkersTest, LabelsAndTheLimitOfExistenceFollowTheLiveParameters) {
   LiveConfig live;
   live.landmark_labels = true;

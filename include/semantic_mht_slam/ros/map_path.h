@@ -9,4 +9,7 @@ namespace semantic_mht_slam {
 /// a folder, and, symbolic links followed, one outside of `map_folder`.
 std::string mapPath(const std::string& asked, const std::string& map_folder);
 
+/// The same for a folder of results.
+std::string resultsPath(const std::string& asked, const std::string& map_folder);
+
 }  // namespace semantic_mht_slam

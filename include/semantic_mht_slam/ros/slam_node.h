@@ -15,9 +15,14 @@
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
+#include <semantic_mht_slam/AddClosure.h>
 #include <semantic_mht_slam/GetLandmarks.h>
 #include <semantic_mht_slam/LoadMap.h>
+#include <semantic_mht_slam/LockLandmark.h>
+#include <semantic_mht_slam/RemoveClosure.h>
+#include <semantic_mht_slam/RemoveLandmark.h>
 #include <semantic_mht_slam/SaveMap.h>
+#include <semantic_mht_slam/SaveResults.h>
 #include <semantic_mht_slam/SetMode.h>
 
 #include "semantic_mht_slam/app/system_config.h"
@@ -67,6 +72,7 @@ class SlamNode {
   void receive(const SemanticObjectArrayConstPtr& message);
   void subscribe();
   void advertiseServices();
+  void advertiseRequests(ros::NodeHandle& handle);
 
   // The worker.
   void work();
@@ -108,6 +114,14 @@ class SlamNode {
   bool saveMap(SaveMap::Request& request, SaveMap::Response& response);
   bool loadMap(LoadMap::Request& request, LoadMap::Response& response);
   bool setMode(SetMode::Request& request, SetMode::Response& response);
+  /// `answer` of a request that changes the map: `body` does so and returns what it did, or throws InputError.
+  template <class Response, class Body>
+  bool change(const std::string& service, Response& response, const Body& body);
+  bool removeLandmark(RemoveLandmark::Request& request, RemoveLandmark::Response& response);
+  bool lockLandmark(LockLandmark::Request& request, LockLandmark::Response& response);
+  bool addClosure(AddClosure::Request& request, AddClosure::Response& response);
+  bool removeClosure(RemoveClosure::Request& request, RemoveClosure::Response& response);
+  bool saveResults(SaveResults::Request& request, SaveResults::Response& response);
   void publishSlowTopics();
   NodeStatus status();
   ClockStatus clockStatus();
@@ -168,6 +182,15 @@ class SlamNode {
   std::unique_ptr<NodeDiagnostics> diagnostics_;
   std::thread worker_;
 };
+
+template <class Response, class Body>
+bool SlamNode::answer(const std::string& service, Response& response, const Body& body) {
+  if (!other_failures_.run(service, body)) {
+    response.success = false;
+    response.message = "unexpected failure of " + other_failures_.status().newest;
+  }
+  return true;
+}
 
 /// The node with the parameters of a private handle. A relative `class_table` is looked up in `config_folder` first.
 /// Throws InputError or ConfigError for parameters that cannot be used.
