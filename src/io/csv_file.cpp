@@ -51,45 +51,59 @@ CsvReader::CsvReader(std::vector<std::string> required, std::vector<std::string>
   columns_.insert(columns_.end(), optional.begin(), optional.end());
 }
 
-std::vector<std::size_t> CsvReader::readHeader(const std::string& where, std::string_view line) const {
-  std::vector<std::size_t> column_of_cell;
+/// The column that a cell belongs to; none for those of unknown names.
+struct CsvReader::Header {
+  std::vector<std::optional<std::size_t>> column_of_cell;
+  std::vector<std::string> unknown;
+};
+
+CsvReader::Header CsvReader::readHeader(const std::string& where, std::string_view line) const {
+  Header header;
   std::vector<bool> found(columns_.size(), false);
   for (const std::string_view name : split(line, ',')) {
     const auto column = std::find(columns_.begin(), columns_.end(), name);
     if (column == columns_.end()) {
-      throw InputError(where + ": unknown column '" + std::string(name) + "', known are " + joined(columns_));
+      header.column_of_cell.emplace_back();
+      header.unknown.emplace_back(name);
+      continue;
     }
     const auto index = static_cast<std::size_t>(column - columns_.begin());
     if (found[index]) throw InputError(where + ": column '" + std::string(name) + "' stands twice");
     found[index] = true;
-    column_of_cell.push_back(index);
+    header.column_of_cell.emplace_back(index);
   }
   for (std::size_t i = 0; i < required_count_; ++i) {
-    if (!found[i]) throw InputError(where + ": column '" + columns_[i] + "' is missing");
+    if (found[i]) continue;
+    const std::string others = header.unknown.empty() ? "" : " (not known: " + joined(header.unknown) + ")";
+    throw InputError(where + ": column '" + columns_[i] + "' is missing" + others);
   }
-  return column_of_cell;
+  return header;
 }
 
-void CsvReader::read(const std::string& path, const std::function<void(const CsvRow&)>& use) const {
+std::string CsvReader::read(const std::string& path, const std::function<void(const CsvRow&)>& use) const {
   const std::string content = readFile(path);
-  std::vector<std::size_t> column_of_cell;
+  Header header;
   CsvRow row(path, columns_);
   forEachLine(content, [&](int line, std::string_view text) {
-    if (column_of_cell.empty()) {
-      column_of_cell = readHeader(at(path, line), text);
+    if (header.column_of_cell.empty()) {
+      header = readHeader(at(path, line), text);
       return;
     }
     const std::vector<std::string_view> cells = split(text, ',');
-    if (cells.size() != column_of_cell.size()) {
+    if (cells.size() != header.column_of_cell.size()) {
       throw InputError(at(path, line) + ": " + std::to_string(cells.size()) + " columns, the header has " +
-                       std::to_string(column_of_cell.size()));
+                       std::to_string(header.column_of_cell.size()));
     }
     row.line_ = line;
     row.cells_.assign(columns_.size(), {});
-    for (std::size_t i = 0; i < cells.size(); ++i) row.cells_[column_of_cell[i]] = cells[i];
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (const auto column = header.column_of_cell[i]) row.cells_[*column] = cells[i];
+    }
     use(row);
   });
-  if (column_of_cell.empty()) throw InputError(path + ": empty, a header line was expected");
+  if (header.column_of_cell.empty()) throw InputError(path + ": empty, a header line was expected");
+  if (header.unknown.empty()) return "";
+  return path + ": ignored columns, known are " + joined(columns_) + ": " + joined(header.unknown);
 }
 
 }  // namespace semantic_mht_slam

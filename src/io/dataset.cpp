@@ -54,9 +54,12 @@ Dataset readDataset(const DatasetFiles& files, const ClassTable& classes) {
   dataset.stamps = readTimes(inside(files.folder, "times.txt"));
   dataset.T_cam0_base = readCalibration(inside(files.folder, "calib.txt"));
   dataset.T_odom_base = readPoses(locate(files.folder, files.odometry), dataset.T_cam0_base, dataset.frames());
-  dataset.detections = files.objects.empty()
-                           ? std::vector<Detections>(dataset.frames())
-                           : readObjects(locate(files.folder, files.objects), classes, dataset.frames());
+  dataset.detections.resize(dataset.frames());
+  if (!files.objects.empty()) {
+    ObjectsFile objects = readObjects(locate(files.folder, files.objects), classes, dataset.frames());
+    dataset.detections = std::move(objects.detections);
+    dataset.notice = std::move(objects.notice);
+  }
   const std::string truth = (fs::path(files.folder) / "poses.txt").string();
   if (fs::exists(truth)) dataset.T_map_base = readPoses(truth, dataset.T_cam0_base, dataset.frames());
   return dataset;

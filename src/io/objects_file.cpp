@@ -88,11 +88,11 @@ std::string formatOptional(const Detection& detection, const Needed& needed) {
 
 }  // namespace
 
-std::vector<Detections> readObjects(const std::string& path, const ClassTable& classes, std::size_t frames) {
+ObjectsFile readObjects(const std::string& path, const ClassTable& classes, std::size_t frames) {
   std::map<std::string, ClassIndex, std::less<>> class_of_name;
   for (int i = 0; i < classes.size(); ++i) class_of_name[classes[i].name] = i;
-  std::vector<Detections> result(frames);
-  CsvReader(kRequired, kOptional).read(path, [&](const CsvRow& row) {
+  ObjectsFile result{std::vector<Detections>(frames), ""};
+  result.notice = CsvReader(kRequired, kOptional).read(path, [&](const CsvRow& row) {
     const std::int64_t frame = row.integer(kFrame);
     if (frame < 0 || frame >= static_cast<std::int64_t>(frames)) {
       row.fail(kFrame, "frame " + std::to_string(frame) + " is outside the " + std::to_string(frames) + " frames");
@@ -101,7 +101,7 @@ std::vector<Detections> readObjects(const std::string& path, const ClassTable& c
     if (found == class_of_name.end()) {
       row.fail(kClass, "unknown class '" + std::string(row.text(kClass)) + "', known are " + classes.names());
     }
-    Detections& detections = result[static_cast<std::size_t>(frame)];
+    Detections& detections = result.detections[static_cast<std::size_t>(frame)];
     detections.push_back(readDetection(row, found->second));
     detections.back().row = static_cast<int>(detections.size()) - 1;
   });

@@ -134,11 +134,12 @@ nlohmann::json toJson(const AlignmentTrials& trials) {
 
 TrueLandmarks readTrueLandmarks(const std::string& path, const Dataset& dataset) {
   TrueLandmarks truth(dataset.frames());
-  CsvReader({"frame", "landmark"}).read(path, [&](const CsvRow& row) {
+  const std::string notice = CsvReader({"frame", "landmark"}).read(path, [&](const CsvRow& row) {
     const std::int64_t frame = row.integer(0);
     if (frame < 0 || frame >= static_cast<std::int64_t>(truth.size())) row.fail(0, "no such frame");
     truth[frame].push_back(static_cast<int>(row.integer(1)));
   });
+  printNotice("evaluate", notice);
   for (std::size_t f = 0; f < truth.size(); ++f) {
     if (truth[f].size() == dataset.detections[f].size()) continue;
     throw InputError(path + ": frame " + std::to_string(f) + " has " + std::to_string(truth[f].size()) +
@@ -197,6 +198,7 @@ int evaluateAlignment(const std::vector<std::string>& arguments) {
   const RegistrationConfig config = readConfig(options.settings);
   const ClassTable classes = readClassTable(options.classes_path);
   const Dataset dataset = readDataset({options.dataset_path, options.objects, "poses.txt"}, classes);
+  printNotice("evaluate", dataset.notice);
   if (!dataset.T_map_base) throw InputError(options.dataset_path + ": no poses.txt, which this needs");
   requireUsable(dataset, options.objects);
   std::optional<TrueLandmarks> truth;

@@ -10,6 +10,8 @@
 #include "semantic_mht_slam/io/csv_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 
+#include "program.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -47,7 +49,7 @@ NumberedLandmarks readTable(const std::string& path) {
   const CsvReader reader({"x", "y"}, {"z", "class", "id", "landmark", "existence", "observations", "sxx", "sxy", "sxz",
                                       "syy", "syz", "szz"});
   NumberedLandmarks result;
-  reader.read(path, [&](const CsvRow& row) {
+  const std::string notice = reader.read(path, [&](const CsvRow& row) {
     PointLandmark landmark;
     landmark.has_height = row.has(2);
     landmark.position_m = {row.number(0), row.number(1), row.optionalNumber(2).value_or(0.0)};
@@ -56,6 +58,7 @@ NumberedLandmarks readTable(const std::string& path) {
     result.ids.push_back(row.has(id_column) ? row.integer(id_column) : static_cast<std::int64_t>(result.ids.size()));
     result.landmarks.push_back(landmark);
   });
+  printNotice("evaluate", notice);
   return result;
 }
 

@@ -6,6 +6,8 @@
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/models/usable_detection.h"
 
+#include "program.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -28,7 +30,9 @@ std::vector<int> framesThatShow(const std::vector<PointLandmark>& landmarks, con
                                 const ClassTable& table, const std::vector<std::string>& classes,
                                 const std::vector<Pose>& T_truth_sensor, double radius_m) {
   std::vector<int> frames(landmarks.size(), 0);
-  const std::vector<Detections> objects = readObjects(objects_path, table, T_truth_sensor.size());
+  const ObjectsFile file = readObjects(objects_path, table, T_truth_sensor.size());
+  printNotice("evaluate", file.notice);
+  const std::vector<Detections>& objects = file.detections;
   for (std::size_t frame = 0; frame < objects.size(); ++frame) {
     std::vector<char> is_shown(landmarks.size(), 0);
     for (const Detection& object : objects[frame]) {

@@ -40,9 +40,8 @@ struct Options {
 
 std::vector<PairEstimate> readPairs(const std::string& path) {
   std::vector<PairEstimate> pairs;
-  CsvReader({"i", "j", "score"}).read(path, [&](const CsvRow& row) {
-    pairs.push_back({row.integer(0), row.integer(1), row.number(2)});
-  });
+  const auto add = [&](const CsvRow& row) { pairs.push_back({row.integer(0), row.integer(1), row.number(2)}); };
+  printNotice("evaluate", CsvReader({"i", "j", "score"}).read(path, add));
   return pairs;
 }
 

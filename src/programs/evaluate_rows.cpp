@@ -1,11 +1,11 @@
 #include "evaluate_rows.h"
 
-#include <algorithm>
 #include <cctype>
+#include <string>
 
-#include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/csv_file.h"
-#include "semantic_mht_slam/io/text_file.h"
+
+#include "program.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -18,29 +18,12 @@ bool readFlag(const CsvRow& row, std::size_t column) {
   return false;
 }
 
-/// The columns of a CSV file beside those that are known.
-std::vector<std::string> furtherColumns(const std::string& path, const std::vector<std::string>& known) {
-  std::vector<std::string> further;
-  bool is_header = true;
-  forEachLine(readFile(path), [&](int, std::string_view line) {
-    if (!is_header) return;
-    is_header = false;
-    for (const std::string_view name : split(line, ',')) {
-      const bool is_new =
-          std::count(known.begin(), known.end(), name) == 0 && std::count(further.begin(), further.end(), name) == 0;
-      if (is_new) further.emplace_back(name);
-    }
-  });
-  return further;
-}
-
 }  // namespace
 
 std::vector<ClosureEstimate> readClosures(const std::string& path) {
-  const std::vector<std::string> columns = {"query_frame", "match_frame", "accepted", "tx", "ty", "tz"};
-  const CsvReader reader(columns, furtherColumns(path, columns));
+  const CsvReader reader({"query_frame", "match_frame", "accepted", "tx", "ty", "tz"});
   std::vector<ClosureEstimate> closures;
-  reader.read(path, [&](const CsvRow& row) {
+  const std::string other_columns = reader.read(path, [&](const CsvRow& row) {
     ClosureEstimate closure{row.integer(0), row.integer(1), readFlag(row, 2), Eigen::Vector3d::Zero()};
     if (closure.accepted) closure.query_in_match_m = {row.number(3), row.number(4), row.number(5)};
     closures.push_back(closure);
@@ -50,17 +33,15 @@ std::vector<ClosureEstimate> readClosures(const std::string& path) {
 
 std::vector<TrueDetection> readTrueDetections(const std::string& path) {
   std::vector<TrueDetection> truth;
-  CsvReader({"frame", "landmark"}).read(path, [&](const CsvRow& row) {
-    truth.push_back({row.integer(0), row.integer(1)});
-  });
+  const auto add = [&](const CsvRow& row) { truth.push_back({row.integer(0), row.integer(1)}); };
+  printNotice("evaluate", CsvReader({"frame", "landmark"}).read(path, add));
   return truth;
 }
 
 std::vector<AssociatedDetection> readAssociations(const std::string& path) {
   std::vector<AssociatedDetection> associations;
-  CsvReader({"frame", "row", "landmark"}).read(path, [&](const CsvRow& row) {
-    associations.push_back({row.integer(0), row.integer(1), row.integer(2)});
-  });
+  const auto add = [&](const CsvRow& row) { associations.push_back({row.integer(0), row.integer(1), row.integer(2)}); };
+  printNotice("evaluate", CsvReader({"frame", "row", "landmark"}).read(path, add));
   return associations;
 }
 

@@ -24,10 +24,12 @@ namespace {
 namespace po = boost::program_options;
 
 constexpr const char* kUsage =
-    "Errors of trajectories against the truth, all in KITTI format with a row a frame.\n"
+    "Errors of trajectories against the truth, in KITTI format with a row a frame.\n"
     "An estimate FILE.tum is in TUM format, of the base frame; its poses are scored whose stamps are in times.txt "
     "beside\n"
-    "the truth, where calib.txt has to be, too.\n"
+    "the truth, where calib.txt has to be, too. With a truth FILE.tum, of the base frame as well, all are in TUM "
+    "format,\n"
+    "and an estimate is scored at the stamps of the truth, between its poses that are less than a second apart.\n"
     "\n"
     "usage: evaluate trajectory --truth poses.txt --estimate FILE [--estimate FILE ...] [--json] [--output DIR]\n"
     "\n"
@@ -38,6 +40,7 @@ constexpr const char* kUsage =
     "  revisit  median error of the relative translation between visits of the same place, m\n";
 
 constexpr std::size_t kNameColumns = 40;
+constexpr double kMaxGap_s = 1.0;
 
 struct Run {
   std::string path;
@@ -77,6 +80,10 @@ std::vector<std::string> labels(const std::vector<std::string>& paths) {
   return result;
 }
 
+bool isTum(const std::string& path) {
+  return std::filesystem::path(path).extension() == ".tum";
+}
+
 /// The poses of a TUM file whose stamps times.txt has, as those of camera 0.
 void readTum(const std::string& truth_path, std::size_t frames, Run& run) {
   const Pose T_cam0_base = readCalibration(calibrationBeside(truth_path));
@@ -94,23 +101,63 @@ void readTum(const std::string& truth_path, std::size_t frames, Run& run) {
   run.poses = poseMatrices(poses);
 }
 
+/// The estimate between its poses at the stamps of a truth in TUM format.
+void readTumAt(const std::vector<StampedPose>& truth, const std::string& truth_path, Run& run) {
+  if (!isTum(run.path)) throw InputError(run.path + ": no .tum file, but the truth " + truth_path + " is one");
+  const std::vector<StampedPose> estimate = readTumTrajectory(run.path);
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Stamp stamp = truth[i].stamp;
+    const auto next = std::lower_bound(estimate.begin(), estimate.end(), stamp,
+                                       [](const StampedPose& pose, Stamp s) { return pose.stamp < s; });
+    if (next == estimate.end() || (next == estimate.begin() && next->stamp != stamp)) continue;
+    const auto before = next->stamp == stamp ? next : std::prev(next);
+    const Stamp gap = next->stamp - before->stamp;
+    if (secondsFromStamp(gap) > kMaxGap_s) continue;
+    const double fraction = gap == 0 ? 0.0 : static_cast<double>(stamp - before->stamp) / static_cast<double>(gap);
+    run.numbers.push_back(i);
+    poses.push_back(interpolate(before->T_world_base, next->T_world_base, fraction));
+  }
+  if (poses.empty()) throw InputError(run.path + ": has no poses at the stamps of " + truth_path);
+  run.poses = poseMatrices(poses);
+}
+
 void readKitti(const std::string& truth_path, std::size_t frames, Run& run) {
   run.poses = readPoseMatrices(run.path);
   requireSameLength(truth_path, frames, run.path, run.poses.size());
   for (std::size_t i = 0; i < frames; ++i) run.numbers.push_back(i);
 }
 
-std::vector<Run> evaluateRuns(const std::string& truth_path, const std::vector<PoseMatrix>& truth,
-                              const std::vector<std::string>& paths) {
+/// The truth, and its stamps if it has any.
+struct Truth {
+  std::string path;
+  std::vector<PoseMatrix> poses;
+  std::vector<StampedPose> stamped;
+};
+
+Truth readTruth(const std::string& path) {
+  if (!isTum(path)) return {path, readPoseMatrices(path), {}};
+  Truth truth{path, {}, readTumTrajectory(path)};
+  std::vector<Pose> poses;
+  for (const StampedPose& pose : truth.stamped) poses.push_back(pose.T_world_base);
+  truth.poses = poseMatrices(poses);
+  return truth;
+}
+
+void readRun(const Truth& truth, Run& run) {
+  if (!truth.stamped.empty()) return readTumAt(truth.stamped, truth.path, run);
+  (isTum(run.path) ? readTum : readKitti)(truth.path, truth.poses.size(), run);
+}
+
+std::vector<Run> evaluateRuns(const Truth& truth, const std::vector<std::string>& paths) {
   const std::vector<std::string> names = labels(paths);
   std::vector<Run> runs;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     Run run;
     run.path = paths[i];
     run.label = names[i];
-    const bool is_tum = std::filesystem::path(run.path).extension() == ".tum";
-    (is_tum ? readTum : readKitti)(truth_path, truth.size(), run);
-    for (const std::size_t number : run.numbers) run.truth.push_back(truth[number]);
+    readRun(truth, run);
+    for (const std::size_t number : run.numbers) run.truth.push_back(truth.poses[number]);
     run.error = trajectoryError(run.truth, run.poses);
     run.frames = frameErrors(run.truth, run.poses);
     runs.push_back(std::move(run));
@@ -210,9 +257,9 @@ int evaluateTrajectory(const std::vector<std::string>& arguments) {
       "folder for trajectory.json, trajectory_errors.csv, trajectory.svg and running_rmse.svg");
   if (!parseOrHelp(arguments, kUsage, options)) return 0;
 
-  const std::vector<PoseMatrix> truth = readPoseMatrices(truth_path);
-  const std::vector<Run> runs = evaluateRuns(truth_path, truth, paths);
-  report(as_json, toJson(runs), table(runs), folder, folder.empty() ? OutputFiles{} : files(truth, runs));
+  const Truth truth = readTruth(truth_path);
+  const std::vector<Run> runs = evaluateRuns(truth, paths);
+  report(as_json, toJson(runs), table(runs), folder, folder.empty() ? OutputFiles{} : files(truth.poses, runs));
   return 0;
 }
 

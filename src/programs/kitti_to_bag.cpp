@@ -58,7 +58,9 @@ Recording readRecording(const Arguments& arguments, const LabelledClasses& label
   const bool is_extracted = arguments.objects.empty() && hasLabelledScans(files.folder);
   if (is_extracted) files.objects.clear();
   if (!arguments.objects.empty()) files.objects = arguments.objects;
-  Recording recording = toRecording(readDataset(files, labelled.classes));
+  Dataset dataset = readDataset(files, labelled.classes);
+  printNotice("kitti_to_bag", dataset.notice);
+  Recording recording = toRecording(std::move(dataset));
   if (!is_extracted) return recording;
   const ExtractionConfig config = loadExtractionConfig(labelled.classes, arguments.extraction, {});
   Progress progress("kitti_to_bag: scan");

@@ -18,6 +18,11 @@ inline void printProblem(const char* name, const std::string& message) {
   for (std::string line; std::getline(lines, line);) std::cerr << name << ": " << line << '\n';
 }
 
+/// The same for what is no problem; nothing for an empty `notice`.
+inline void printNotice(const char* name, const std::string& notice) {
+  if (!notice.empty()) printProblem(name, notice);
+}
+
 /// Runs the body of a program and returns its exit code; any exception becomes "name: message", a line for each line of
 /// the message, and exit code 1. So does standard output that cannot be written.
 inline int runProgram(const char* name, const std::function<int()>& body) {

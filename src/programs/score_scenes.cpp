@@ -90,7 +90,8 @@ FramePairs readPairs(const std::string& path, std::size_t frames) {
     }
     return static_cast<std::size_t>(frame);
   };
-  CsvReader({"i", "j"}).read(path, [&](const CsvRow& row) { pairs.emplace_back(frameOf(row, 0), frameOf(row, 1)); });
+  const auto add = [&](const CsvRow& row) { pairs.emplace_back(frameOf(row, 0), frameOf(row, 1)); };
+  printNotice("score_scenes", CsvReader({"i", "j"}).read(path, add));
   return pairs;
 }
 
@@ -190,8 +191,9 @@ int run(const Arguments& arguments) {
   const FramePairs pairs = readPairs(arguments.pairs, frames);
   std::vector<Pose> T_odom_base;
   if (arguments.window > 0) T_odom_base = readOdometry(arguments, frames);
-  const Scenes scenes(readObjects(locate(arguments.dataset, arguments.objects), classes, frames),
-                      std::move(T_odom_base), arguments.window, classes);
+  ObjectsFile objects = readObjects(locate(arguments.dataset, arguments.objects), classes, frames);
+  printNotice("score_scenes", objects.notice);
+  const Scenes scenes(std::move(objects.detections), std::move(T_odom_base), arguments.window, classes);
   const PlaceConfig& place = config.slam.back_end.place;
   const ScoreOfPair score = arguments.chain == "paper" ? paperScore(scenes, classes, place.paper)
                                                        : alignmentScore(scenes, classes, config.slam);

@@ -92,7 +92,9 @@ SystemConfig loadConfig(const Arguments& arguments) {
 
 Recording loadRecording(const Arguments& arguments, const ClassTable& classes, const SystemConfig& config) {
   if (!arguments.bag.empty()) return readBag(arguments.bag, classes, config.node, arguments.topics);
-  return toRecording(readDataset(arguments.dataset, classes));
+  Dataset dataset = readDataset(arguments.dataset, classes);
+  printNotice("slam_offline", dataset.notice);
+  return toRecording(std::move(dataset));
 }
 
 /// What has to be said of the odometry's beginnings; empty if there is one, in its place.

@@ -23,7 +23,9 @@ class ObjectsFileTest : public ::testing::Test {
  protected:
   std::vector<Detections> read(const std::string& content, std::size_t frames = 3) {
     writeFileAtomically(path_, content);
-    return readObjects(path_, classes_, frames);
+    ObjectsFile file = readObjects(path_, classes_, frames);
+    notice_ = file.notice;
+    return file.detections;
   }
 
   void expectRefused(const std::string& content, const std::vector<std::string>& parts) {
@@ -31,6 +33,7 @@ class ObjectsFileTest : public ::testing::Test {
   }
 
   const ClassTable classes_ = makeTable();
+  std::string notice_;
   const TemporaryFolder folder_;
   const std::string path_ = folder_ / "objects.csv";
 };
@@ -79,10 +82,20 @@ TEST_F(ObjectsFileTest, BadRowsAreNamedByFileLineAndColumn) {
   expectRefused(head + "0.5,pole,1,2,3\n", {"objects.csv:2", "'0.5' is not a whole number"});
   expectRefused(head + "0,pole,,2,3\n", {"objects.csv:2", "column 'x'", "empty"});
   expectRefused("frame,class,x,y\n", {"objects.csv:1", "'z' is missing"});
-  expectRefused("frame,class,x,y,z,velocity\n", {"objects.csv:1", "unknown column 'velocity'"});
+  expectRefused("frame,class,x,y,heigth\n", {"objects.csv:1", "'z' is missing", "not known: heigth"});
   expectRefused("frame,class,x,y,z,x\n", {"objects.csv:1", "'x' stands twice"});
   expectRefused("frame,class,x,y,z,sxx\n0,pole,1,2,3,1\n", {"objects.csv:2", "'sxy'"});
   expectRefused("", {"objects.csv", "empty"});
+}
+
+TEST_F(ObjectsFileTest, ColumnsThatAreNotKnownAreIgnoredWithAWord) {
+  const auto frames = read("frame,velocity,class,x,y,z,track\n0,7.5,pole,1,2,3,a b\n");
+  ASSERT_EQ(frames[0].size(), 1U);
+  EXPECT_EQ(frames[0][0].position_m, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_NE(notice_.find("objects.csv: ignored columns"), std::string::npos) << notice_;
+  EXPECT_NE(notice_.find("velocity, track"), std::string::npos) << notice_;
+  read("frame,class,x,y,z\n0,pole,1,2,3\n");
+  EXPECT_EQ(notice_, "");
 }
 
 TEST_F(ObjectsFileTest, NumbersThatAreNotFiniteAreReadAndNotUsable) {

@@ -79,7 +79,8 @@ class KittiScansTest : public ::testing::Test {
 
 TEST_F(KittiScansTest, CentroidsOfAnotherExtractorAreFoundAgain) {
   const std::size_t frames = readTimes(*kitti00_ + "/times.txt").size();
-  const std::vector<Detections> expected = readObjects(*kitti00_ + "/objects.csv", semantic_kitti_.classes, frames);
+  const std::vector<Detections> expected =
+      readObjects(*kitti00_ + "/objects.csv", semantic_kitti_.classes, frames).detections;
   Share thin;
   Share vehicles;
   for (const std::string& frame : kFrames) {

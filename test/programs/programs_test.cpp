@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/io/text_file.h"
+#include "semantic_mht_slam/io/trajectory_file.h"
 
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
@@ -76,6 +77,24 @@ TEST_F(ProgramsTest, TheConfigurationInForceIsPrintedWithoutARunAndIsThatOfTheRu
   EXPECT_FALSE(fs::exists(output_));
   ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments() + settings).exit_code, 0);
   EXPECT_EQ(printed.output, readFile(output_ + "/config.yaml"));
+}
+
+TEST_F(ProgramsTest, ATruthOfOnesOwnMayBeInTumFormat) {
+  ASSERT_EQ(runProgramOfPackage("slam_offline", offlineArguments()).exit_code, 0);
+  const std::string estimate = output_ + "/trajectory.tum";
+  std::vector<StampedPose> truth = readTumTrajectory(estimate);
+  truth.erase(truth.begin(), truth.begin() + 5);
+  for (StampedPose& pose : truth) pose.stamp -= 1000;  // between poses of the estimate
+  truth.front().stamp = 1;                             // before it
+  writeFileAtomically(folder_ / "truth.tum", formatTumTrajectory(truth));
+  const std::string arguments = "trajectory --json --truth '" + folder_ / "truth.tum" + "' --estimate '";
+  const ProgramResult result = runProgramOfPackage("evaluate", arguments + estimate + "'");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const std::size_t key = result.output.find("\"se3_m\": ");
+  ASSERT_NE(key, std::string::npos) << result.output;
+  EXPECT_LT(std::stod(result.output.substr(key + 9)), 1e-3);
+  EXPECT_NE(result.output.find("\"frames\": " + std::to_string(truth.size() - 1)), std::string::npos) << result.output;
+  expectRefused("evaluate", arguments + output_ + "/trajectory.txt'", "no .tum file");
 }
 
 TEST_F(ProgramsTest, LandmarksThatHardlyAFrameShowsAreNotMissed) {

@@ -41,12 +41,14 @@ class CsvReader {
   /// Columns are numbered as in `required`, then as in `optional`.
   explicit CsvReader(std::vector<std::string> required, std::vector<std::string> optional = {});
 
-  /// Calls `use` for each row. Throws InputError for a missing file, a missing, repeated or unknown column and a row
-  /// with another number of cells than the header.
-  void read(const std::string& path, const std::function<void(const CsvRow&)>& use) const;
+  /// Calls `use` for each row. Returns which columns are not known and were ignored, as a sentence that names the file;
+  /// empty if there are none. Throws InputError for a missing file, a missing or repeated column and a row with another
+  /// number of cells than the header.
+  [[nodiscard]] std::string read(const std::string& path, const std::function<void(const CsvRow&)>& use) const;
 
  private:
-  std::vector<std::size_t> readHeader(const std::string& where, std::string_view line) const;
+  struct Header;
+  Header readHeader(const std::string& where, std::string_view line) const;
 
   std::vector<std::string> columns_;
   std::size_t required_count_;

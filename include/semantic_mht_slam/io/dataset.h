@@ -19,6 +19,7 @@ struct Dataset {
   std::vector<Pose> T_odom_base;
   std::vector<Detections> detections;
   std::optional<std::vector<Pose>> T_map_base;  ///< ground truth
+  std::string notice;                           ///< of what was ignored in the objects file; empty: nothing
 
   std::size_t frames() const { return stamps.size(); }
 };
