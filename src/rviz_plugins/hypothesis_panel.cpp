@@ -25,6 +25,7 @@ namespace {
 constexpr int kRefresh_ms = 200;
 constexpr double kClickLimit_m = 10.0;
 constexpr double kResetQuestion_s = 5.0;
+constexpr double kSilence_s = 5.0;  // diagnostics come every second
 
 QLabel* makeText(const QString& text) {
   auto* label = new QLabel(text);
@@ -52,6 +53,8 @@ HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   layout->addWidget(counters_);
   layout->addWidget(legend_);
   layout->addWidget(fault_label_);
+  tree_view_ = new TreeView;
+  layout->addWidget(tree_view_);
   layout->addWidget(makeTable(), 1);
   layout->addWidget(landmark_);
   layout->addWidget(makeButtons());
@@ -103,12 +106,12 @@ QWidget* HypothesisPanel::makeButtons() {
 void HypothesisPanel::connectButtons() {
   connect(save_, &QPushButton::clicked, this, [this] {
     SaveMap::Request request;
-    request.path = fileName();
+    request.path = file_->text().toStdString();
     services_.call<SaveMap>(handle_.resolveName("save_map"), request);
   });
   connect(load_, &QPushButton::clicked, this, [this] {
     LoadMap::Request request;
-    request.path = fileName();
+    request.path = file_->text().toStdString();
     services_.call<LoadMap>(handle_.resolveName("load_map"), request);
   });
   connect(finish_, &QPushButton::clicked, this,
@@ -129,6 +132,7 @@ void HypothesisPanel::onInitialize() {
   tree_subscriber_ = handle_.subscribe<HypothesisTree>("hypotheses", 2, [this](const HypothesisTreeConstPtr& message) {
     tree_ = *message;
     has_new_tree_ = true;
+    tree_view_->add(tree_);
   });
   map_subscriber_ = handle_.subscribe<SemanticMap>("map", 1, [this](const SemanticMapConstPtr& message) {
     map_ = message;
@@ -150,6 +154,7 @@ void HypothesisPanel::noteDiagnostics(const diagnostic_msgs::DiagnosticArray& me
     if (status.hardware_id != kDiagnosticsHardwareId) continue;
     if (is_first) fault_.clear();
     is_first = false;
+    last_news_ = ros::WallTime::now();
     for (const diagnostic_msgs::KeyValue& value : status.values) figures_[value.key] = value.value;
     if (fault_.empty() && status.level != diagnostic_msgs::DiagnosticStatus::OK) fault_ = status.message;
   }
@@ -162,7 +167,23 @@ void HypothesisPanel::showLandmark(const geometry_msgs::PointStamped& click) {
                                                      "': set the fixed frame to '" + map_->header.frame_id + "'."));
   }
   const Landmark* landmark = nearestLandmark(*map_, click.point, kClickLimit_m);
+  clicked_.reset();
   if (landmark == nullptr) return landmark_->setText("No landmark within 10 m of the click.");
+  clicked_ = landmark->id;
+  describeClicked();
+}
+
+/// As the newest map has it: ids stay when landmarks are merged.
+void HypothesisPanel::describeClicked() {
+  if (!clicked_) return;
+  const auto isClicked = [this](const Landmark& landmark) {
+    return landmark.id == *clicked_ ||
+           std::count(landmark.merged_ids.begin(), landmark.merged_ids.end(), *clicked_) > 0;
+  };
+  const auto landmark = std::find_if(map_->landmarks.begin(), map_->landmarks.end(), isClicked);
+  if (landmark == map_->landmarks.end()) {
+    return landmark_->setText(QString("Landmark %1 is not in the map any more.").arg(*clicked_));
+  }
   QStringList lines;
   for (const std::string& line : describeLandmark(*map_, *landmark)) lines << QString::fromStdString(line);
   landmark_->setText(lines.join("\n"));
@@ -173,6 +194,7 @@ void HypothesisPanel::refresh() {
   if (has_new_map_) {
     has_new_map_ = false;
     refreshLegend();
+    describeClicked();
     view_.fit(*map_, vis_manager_);
   }
   refreshCounters();
@@ -219,8 +241,10 @@ void HypothesisPanel::refreshCounters() {
                          .arg(tree_.hypotheses.size())
                          .arg(tree_.effective_sample_size, 0, 'f', 1)
                          .arg(figure("frame time, mean (ms)"), figure("waiting"), figure("resident memory (MB)")));
-  fault_label_->setVisible(!fault_.empty());
-  fault_label_->setText(QString::fromStdString(fault_));
+  const bool is_silent = !last_news_.isZero() && (ros::WallTime::now() - last_news_).toSec() > kSilence_s;
+  const std::string fault = is_silent ? "The node says nothing any more: these are its last figures." : fault_;
+  fault_label_->setVisible(!fault.empty());
+  fault_label_->setText(QString::fromStdString(fault));
 }
 
 /// The classes of the map in their colours, with the number of landmarks of each.
@@ -246,10 +270,6 @@ void HypothesisPanel::refreshStatus() {
     reset_asked_ = ros::WallTime();
     reset_->setText("Reset");
   }
-}
-
-std::string HypothesisPanel::fileName() const {
-  return file_->text().toStdString();
 }
 
 void HypothesisPanel::askOrReset() {

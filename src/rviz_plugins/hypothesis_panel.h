@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -12,6 +14,7 @@
 #include <semantic_mht_slam/SemanticMap.h>
 
 #include "service_caller.h"
+#include "tree_view.h"
 #include "view_fitter.h"
 
 class QLabel;
@@ -21,8 +24,8 @@ class QTableWidget;
 
 namespace semantic_mht_slam {
 
-/// rviz panel: a live table of the hypotheses, counters, the node's services as buttons, and what is known of the
-/// landmark that was clicked with the tool Publish Point.
+/// rviz panel: the hypotheses as a tree and as a live table, counters, the node's services as buttons, and what is
+/// known of the landmark that was clicked with the tool Publish Point.
 class HypothesisPanel : public rviz::Panel {
   Q_OBJECT
 
@@ -42,13 +45,13 @@ class HypothesisPanel : public rviz::Panel {
   // The messages come in the thread of the display; they are kept, and shown a few times a second.
   void noteDiagnostics(const diagnostic_msgs::DiagnosticArray& message);
   void showLandmark(const geometry_msgs::PointStamped& click);
+  void describeClicked();
 
   void refresh();
   void refreshTable();
   void refreshCounters();
   void refreshLegend();
   void refreshStatus();
-  std::string fileName() const;
   void askOrReset();
 
   ros::NodeHandle handle_;
@@ -60,6 +63,8 @@ class HypothesisPanel : public rviz::Panel {
   bool has_new_tree_ = false;
   SemanticMapConstPtr map_;
   bool has_new_map_ = false;
+  std::optional<std::uint64_t> clicked_;  ///< the landmark that is described
+  ros::WallTime last_news_;               ///< of the node's diagnostics
   ViewFitter view_;
   std::map<std::string, std::string> figures_;  ///< of the node's diagnostics
   std::string fault_;                           ///< the first one of the node's diagnostics, or empty
@@ -67,6 +72,7 @@ class HypothesisPanel : public rviz::Panel {
   ros::WallTime reset_asked_;
 
   QTableWidget* table_ = nullptr;
+  TreeView* tree_view_ = nullptr;
   QLabel* counters_ = nullptr;
   QLabel* fault_label_ = nullptr;
   QLineEdit* file_ = nullptr;

@@ -1,5 +1,7 @@
 #include <QApplication>
+#include <QImage>
 #include <QLabel>
+#include <QPixmap>
 #include <QPushButton>
 #include <QTableWidget>
 #include <atomic>
@@ -103,6 +105,85 @@ TEST_F(HypothesisPanelTest, TableAndCountersShowTheNewestMessages) {
   diagnostics.status[0].values[0].value = "5";
   advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics").publish(diagnostics);
   EXPECT_TRUE(comesToSay("counters", "loops 5"));
+}
+
+TEST_F(HypothesisPanelTest, HypothesesAreDrawnAsATree) {
+  auto* view = panel_->findChild<QWidget*>("tree");
+  ASSERT_NE(view, nullptr);
+  view->resize(300, 120);
+  const ros::Publisher trees = advertise<HypothesisTree>("hypotheses");
+  const auto coloured = [&] {
+    const QImage image = view->grab().toImage();
+    int count = 0;
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) count += image.pixelColor(x, y).saturation() > 100 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(coloured(), 0) << "no tree yet";
+  HypothesisTree tree;
+  tree.hypotheses.resize(1);
+  tree.hypotheses[0].id = 1;
+  tree.hypotheses[0].weight = 1.0;
+  trees.publish(tree);
+  ASSERT_TRUE(display([&] { return coloured() > 0; }));
+  tree.hypotheses.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    tree.hypotheses[i].id = 2 + i;
+    tree.hypotheses[i].parent_id = 1;
+    tree.hypotheses[i].weight = 0.5;
+  }
+  for (int frame = 0; frame < 20; ++frame) trees.publish(tree);
+  EXPECT_TRUE(display([&] { return coloured() > 300; })) << "two lines";
+}
+
+TEST_F(HypothesisPanelTest, NoTextMovesTheButtons) {
+  panel_->resize(330, 850);
+  panel_->show();
+  const auto place = [&] { return panel_->findChild<QPushButton*>("Save")->mapTo(panel_.get(), QPoint(0, 0)); };
+  ASSERT_TRUE(comesToSay("counters", "hypotheses"));
+  const QPoint before = place();
+  SemanticMap map;
+  map.header.frame_id = "map";
+  map.classes.resize(20);
+  map.landmarks.resize(20);
+  for (std::size_t i = 0; i < 20; ++i) {
+    map.classes[i].name = "a class with a long name " + std::to_string(i);
+    map.classes[i].id = map.landmarks[i].class_id = static_cast<std::uint16_t>(i);
+    map.landmarks[i].id = 100 + i;
+    map.landmarks[i].components.resize(4);
+  }
+  advertise<SemanticMap>("map").publish(map);
+  EXPECT_TRUE(comesToSay("legend", "name 19"));
+  geometry_msgs::PointStamped click;
+  click.header.frame_id = "map";
+  advertise<geometry_msgs::PointStamped>("/clicked_point").publish(click);
+  EXPECT_TRUE(comesToSay("landmark", "10"));
+  EXPECT_EQ(place(), before);
+}
+
+TEST_F(HypothesisPanelTest, WhatTheMapLacksIsNotDescribedAnyMore) {
+  SemanticMap map;
+  map.header.frame_id = "map";
+  map.classes.resize(1);
+  map.classes[0].name = "pole";
+  map.landmarks.resize(1);
+  map.landmarks[0].id = 5;
+  map.landmarks[0].components.resize(1);
+  const ros::Publisher maps = advertise<SemanticMap>("map");
+  maps.publish(map);
+  ASSERT_TRUE(comesToSay("counters", "landmarks 1"));
+  geometry_msgs::PointStamped click;
+  click.header.frame_id = "map";
+  advertise<geometry_msgs::PointStamped>("/clicked_point").publish(click);
+  ASSERT_TRUE(comesToSay("landmark", "pole 5"));
+  map.landmarks[0].id = 3;
+  map.landmarks[0].merged_ids = {5};
+  maps.publish(map);
+  EXPECT_TRUE(comesToSay("landmark", "pole 3")) << "it was merged";
+  map.landmarks.clear();
+  maps.publish(map);
+  EXPECT_TRUE(comesToSay("landmark", "Landmark 5 is not in the map any more"));
 }
 
 TEST_F(HypothesisPanelTest, ClickShowsTheLandmarkItsHistoryAndAlternatives) {

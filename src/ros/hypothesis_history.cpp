@@ -1,0 +1,105 @@
+#include "semantic_mht_slam/ros/hypothesis_history.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kKept = 200;  // frames that a hypothesis that was dropped is remembered
+
+}  // namespace
+
+void HypothesisHistory::add(const HypothesisTree& message) {
+  if (message.submap != submap_ || message.hypotheses.empty()) *this = {};
+  submap_ = message.submap;
+  if (message.hypotheses.empty()) return;
+  ++now_;
+  for (const Hypothesis& hypothesis : message.hypotheses) {
+    const auto [found, is_new] = branches_.try_emplace(hypothesis.id);
+    Branch& branch = found->second;
+    if (is_new) {
+      branch.parent = hypothesis.parent_id;
+      branch.born = std::max(0, now_ - static_cast<int>(hypothesis.age));
+      const auto parent = branches_.find(branch.parent);
+      if (parent != branches_.end()) parent->second.seen = std::max(parent->second.seen, branch.born);
+    }
+    branch.seen = now_;
+    branch.weight = hypothesis.weight;
+  }
+  forget();
+}
+
+/// What was dropped long ago, or ended there without leading to one that lives.
+void HypothesisHistory::forget() {
+  const std::set<std::uint64_t> kept = wayToLiving();
+  for (auto branch = branches_.begin(); branch != branches_.end();) {
+    const bool is_old = branch->second.seen < now_ - kKept;
+    branch = is_old && kept.count(branch->first) == 0 ? branches_.erase(branch) : std::next(branch);
+  }
+}
+
+/// The living hypotheses and all that they come from.
+std::set<std::uint64_t> HypothesisHistory::wayToLiving() const {
+  std::set<std::uint64_t> way;
+  for (const auto& [id, branch] : branches_) {
+    if (branch.seen < now_) continue;
+    for (auto next = branches_.find(id); next != branches_.end() && way.insert(next->first).second;) {
+      next = branches_.find(next->second.parent);
+    }
+  }
+  return way;
+}
+
+/// Gives rows to a hypothesis and to what comes from it; returns its own.
+double HypothesisHistory::place(std::uint64_t id, const std::map<std::uint64_t, std::vector<std::uint64_t>>& children,
+                                double& next_row, std::map<std::uint64_t, double>& rows) const {
+  const auto found = children.find(id);
+  if (found == children.end()) return rows[id] = next_row++;
+  double first = 0.0;
+  double last = 0.0;
+  for (std::size_t i = 0; i < found->second.size(); ++i) {
+    last = place(found->second[i], children, next_row, rows);
+    if (i == 0) first = last;
+  }
+  return rows[id] = 0.5 * (first + last);
+}
+
+std::vector<DrawnHypothesis> HypothesisHistory::drawn(int frames) const {
+  const int oldest = std::max(0, now_ - frames);
+  const auto isShown = [&](const Branch& branch) { return branch.seen >= oldest; };
+  std::map<std::uint64_t, std::vector<std::uint64_t>> children;
+  std::vector<std::uint64_t> roots;
+  for (const auto& [id, branch] : branches_) {
+    if (!isShown(branch)) continue;
+    const auto parent = branches_.find(branch.parent);
+    const bool has_parent = parent != branches_.end() && isShown(parent->second) && parent->first < id;
+    has_parent ? children[branch.parent].push_back(id) : roots.push_back(id);
+  }
+  std::map<std::uint64_t, double> rows;
+  double next_row = 0.0;
+  for (const std::uint64_t root : roots) place(root, children, next_row, rows);
+  const std::set<std::uint64_t> way = wayToLiving();
+  const auto position = [&](int frame) {
+    return std::clamp(static_cast<double>(frame - oldest) / std::max(1, now_ - oldest), 0.0, 1.0);
+  };
+  std::vector<DrawnHypothesis> result;
+  for (const auto& [id, row] : rows) {
+    const Branch& branch = branches_.at(id);
+    const auto parent = rows.find(branch.parent);
+    const bool is_living = branch.seen == now_;
+    result.push_back({id, position(branch.born), position(branch.seen), row,
+                      parent == rows.end() ? row : parent->second, is_living ? branch.weight : 0.0, is_living,
+                      !is_living && way.count(id) > 0});
+  }
+  return result;
+}
+
+std::size_t HypothesisHistory::rows(const std::vector<DrawnHypothesis>& drawn) {
+  double last = -1.0;
+  for (const DrawnHypothesis& hypothesis : drawn) last = std::max(last, hypothesis.row);
+  return static_cast<std::size_t>(std::lround(std::floor(last) + 1.0));
+}
+
+}  // namespace semantic_mht_slam
