@@ -44,6 +44,11 @@ cv::Mat toColor(const ImageView& image, bool is_red_first) {
   return color;
 }
 
+/// Values of the channels in the order of the network.
+cv::Scalar inOrder(double red, double green, double blue, bool is_red_first) {
+  return is_red_first ? cv::Scalar(red, green, blue) : cv::Scalar(blue, green, red);
+}
+
 /// Ids of an output of 1xCxhxw scores: the first of the best classes.
 cv::Mat1w bestClasses(const cv::Mat& scores) {
   const int classes = scores.size[1];
@@ -93,6 +98,9 @@ void describe(SegmentationConfig& config, Fields& fields) {
   fields.add("mean_green", config.mean_green, "", {0.0, 255.0}, "Subtracted from the green channel.");
   fields.add("mean_blue", config.mean_blue, "", {0.0, 255.0}, "Subtracted from the blue channel.");
   fields.add("scale", config.scale, "", {1e-9, 1e3}, "Multiplied with the channels after that.");
+  fields.add("stddev_red", config.stddev_red, "", {1e-6, 1e6}, "The red channel is divided by this after that.");
+  fields.add("stddev_green", config.stddev_green, "", {1e-6, 1e6}, "The same for the green channel.");
+  fields.add("stddev_blue", config.stddev_blue, "", {1e-6, 1e6}, "The same for the blue channel.");
 }
 
 SegmentationNetwork::SegmentationNetwork(const SegmentationConfig& config)
@@ -118,13 +126,19 @@ LabelImage SegmentationNetwork::segment(const ImageView& image) {
   const cv::Mat color = toColor(image, config_.is_red_first);
   const cv::Size size(config_.input_width_px > 0 ? config_.input_width_px : image.width_px,
                       config_.input_height_px > 0 ? config_.input_height_px : image.height_px);
-  const cv::Scalar mean = config_.is_red_first ? cv::Scalar(config_.mean_red, config_.mean_green, config_.mean_blue)
-                                               : cv::Scalar(config_.mean_blue, config_.mean_green, config_.mean_red);
+  const cv::Scalar mean = inOrder(config_.mean_red, config_.mean_green, config_.mean_blue, config_.is_red_first);
+  const cv::Scalar stddev =
+      inOrder(config_.stddev_red, config_.stddev_green, config_.stddev_blue, config_.is_red_first);
   cv::Mat output;
   try {
     constexpr bool kSwap = false;
     constexpr bool kCrop = false;
-    network_->net.setInput(cv::dnn::blobFromImage(color, config_.scale, size, mean, kSwap, kCrop, CV_32F));
+    cv::Mat blob = cv::dnn::blobFromImage(color, config_.scale, size, mean, kSwap, kCrop, CV_32F);
+    for (int c = 0; c < 3; ++c) {
+      cv::Mat1f channel(size, blob.ptr<float>(0, c));
+      channel /= stddev[c];
+    }
+    network_->net.setInput(blob);
     output = network_->net.forward();
   } catch (const cv::Exception& error) {
     throw InputError(config_.model + ": the network cannot be run on an image of " + std::to_string(size.width) + "x" +

@@ -75,6 +75,18 @@ TEST_F(SegmentationNetworkTest, MeanOfEachColourIsSubtractedFromThatColour) {
   }
 }
 
+TEST_F(SegmentationNetworkTest, EachColourIsDividedByItsDeviation) {
+  for (const bool is_red_first : {true, false}) {
+    config_.is_red_first = is_red_first;
+    config_.stddev_red = 1000.0;
+    SegmentationNetwork network(config_);
+    makeImage(40, 30, 3, true);
+    const LabelImage labels = network.segment(view_);
+    const std::uint16_t red = is_red_first ? 0 : 2;  // channel of the network that no pixel is brightest in
+    for (const std::uint16_t label : labels.labels) EXPECT_NE(label, red);
+  }
+}
+
 TEST_F(SegmentationNetworkTest, LabelsHaveTheSizeOfTheImageWhateverTheNetworkWants) {
   config_.input_width_px = 16;
   config_.input_height_px = 8;

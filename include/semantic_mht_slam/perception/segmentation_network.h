@@ -30,6 +30,9 @@ struct SegmentationConfig {
   double mean_green = 0.0;
   double mean_blue = 0.0;
   double scale = 1.0 / 255.0;  ///< multiplied after that
+  double stddev_red = 1.0;     ///< by which the channel is divided after that
+  double stddev_green = 1.0;
+  double stddev_blue = 1.0;
 };
 
 void describe(SegmentationConfig& config, Fields& fields);
