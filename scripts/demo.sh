@@ -5,11 +5,13 @@
 #   scripts/demo.sh --rviz     the same drive as a bag, replayed live in rviz
 set -euo pipefail
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+NEEDED=(simulate_drive slam_offline evaluate)
 case "${1:-}" in
-  "" | --rviz) ;;
+  "") ;;
+  --rviz) NEEDED=(all) ;;
   *) echo "demo: unknown option $1 (there is --rviz)" >&2; exit 1 ;;
 esac
-"$REPOSITORY/scripts/setup.sh"
+"$REPOSITORY/scripts/setup.sh" --only "${NEEDED[@]}"
 # shellcheck source=scripts/environment.sh
 source "$REPOSITORY/scripts/environment.sh"
 OUTPUT="$REPOSITORY/build/demo"

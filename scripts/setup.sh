@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing (apt only) and builds the package into build/. Safe to run again: it does only what is left.
-#   scripts/setup.sh [--tests | --benchmark]
-# --tests builds the tests as well and installs what they need; --benchmark installs what the program `benchmark` needs.
+#   scripts/setup.sh [--tests | --benchmark | --only PROGRAM...]
+# --tests builds the tests as well and installs what they need; --benchmark installs what the program `benchmark` needs; --only
+# builds what these programs need, which is less.
 set -euo pipefail
 
 # Every package that building and showing needs. The one list, with those that only the benchmark and the tests need below.
@@ -22,7 +23,7 @@ PACKAGES=(
   libgtest-dev libbenchmark-dev
 )
 BENCHMARK_PACKAGES=(python3-matplotlib python3-pandas python3-jinja2)
-TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest)
+TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest catkin-lint)
 
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"  # the system's Python has catkin; another one on the PATH may not
@@ -81,7 +82,7 @@ say_progress() {
 }
 
 configure_and_build() {
-  local base=$REPOSITORY tests=$1 log
+  local base=$REPOSITORY log
   [[ "$base" != *[[:space:]]* ]] || base=$(link_without_blanks "$REPOSITORY")
   local workspace="$base/build/workspace"
   local link="$workspace/src/semantic_mht_slam" source="$base" build="$workspace/build"
@@ -101,7 +102,7 @@ configure_and_build() {
     tail -n 30 "$log" >&2
     fail "configuring failed; the end of its output is above (all of it: $log)"
   fi
-  cmake --build "$build" -- -j"$(nproc)" --no-print-directory all ${tests:+tests} >"$build/build.log" 2>&1 &
+  cmake --build "$build" -- -j"$(nproc)" --no-print-directory "${TARGETS[@]}" >"$build/build.log" 2>&1 &
   say_progress "$!" "$build/build.log"
   wait "$!" || {
     grep -E -A5 "error:|\*\*\*" "$build/build.log" | head -n 60 >&2 || true
@@ -109,13 +110,14 @@ configure_and_build() {
   }
 }
 
-tests=""
+TARGETS=(all)
 case "${1:-}" in
   "") ;;
-  --tests) tests=tests; PACKAGES+=("${TEST_PACKAGES[@]}") ;;
+  --tests) TARGETS+=(tests); PACKAGES+=("${TEST_PACKAGES[@]}") ;;
   --benchmark) PACKAGES+=("${BENCHMARK_PACKAGES[@]}") ;;
-  *) fail "unknown option $1 (there are --tests and --benchmark)" ;;
+  --only) TARGETS=("${@:2}") ;;
+  *) fail "unknown option $1 (there are --tests, --benchmark and --only)" ;;
 esac
 install_missing
 echo "setup: building"
-configure_and_build "$tests"
+configure_and_build
