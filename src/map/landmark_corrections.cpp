@@ -67,7 +67,7 @@ void RemovedLandmark::transfer(StateArchive& archive) {
   archive(newest_name, submap, position_m, class_index, radius_m);
   archive.requireName(newest_name);
   archive.requireClass(class_index);
-  archive.require(names.back() <= newest_name && !submap.isNone() && radius_m >= 0.0,
+  archive.require(!names.empty() && names.back() <= newest_name && !submap.isNone() && radius_m >= 0.0,
                   "a removed landmark without a place");
 }
 
