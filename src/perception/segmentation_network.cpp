@@ -135,7 +135,7 @@ LabelImage SegmentationNetwork::segment(const ImageView& image) {
     constexpr bool kCrop = false;
     cv::Mat blob = cv::dnn::blobFromImage(color, config_.scale, size, mean, kSwap, kCrop, CV_32F);
     for (int c = 0; c < 3; ++c) {
-      cv::Mat1f channel(size, blob.ptr<float>(0, c));
+      cv::Mat1f channel(size.height, size.width, blob.ptr<float>(0, c));
       channel /= stddev[c];
     }
     network_->net.setInput(blob);
