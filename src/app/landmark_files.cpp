@@ -94,7 +94,7 @@ Eigen::Vector2d toLatitudeLongitude(const MapOrigin& origin, const Eigen::Vector
 }
 
 std::string landmarksCsv(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes) {
-  std::string text = "id,class,x,y,z,existence,observations,sxx,sxy,sxz,syy,syz,szz\n";
+  std::string text = "id,class,x,y,z,existence,observations,sxx,sxy,sxz,syy,syz,szz,movable,seen_standing\n";
   for (const MixtureLandmark& landmark : landmarks) {
     text += std::to_string(landmark.id) + "," + classes[landmark.mostLikelyClass()].name;
     for (int i = 0; i < 3; ++i) text += "," + formatFixed(landmark.position.mean_m[i], 4);
@@ -103,7 +103,8 @@ std::string landmarksCsv(const std::vector<MixtureLandmark>& landmarks, const Cl
     for (Eigen::Index row = 0; row < 3; ++row) {
       for (Eigen::Index column = row; column < 3; ++column) text += "," + formatDouble(cov(row, column));
     }
-    text += "\n";
+    text += classes[landmark.mostLikelyClass()].is_static ? ",0," : ",1,";
+    text += formatFixed(landmark.seen_standing_s, 3) + "\n";
   }
   return text;
 }

@@ -84,7 +84,10 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.state = slam.snapshot();
   result.sessions = slam.parts().sessions.summary(slam.map());
   result.detector_range_m = slam.parts().range_factor * Length::kReferenceRange_m;
-  if (slam.parts().mapper) result.odometry_model = slam.parts().mapper->odometryModel();
+  if (slam.parts().mapper) {
+    result.odometry_model = slam.parts().mapper->odometryModel();
+    result.moving = slam.parts().mapper->movingCounts();
+  }
   result.counters = slam.parts().assembler.counters() - counted;
   result.landmarks = landmarksOf(slam, uncertainty);
   result.loop_closures = loopClosures(slam.map());

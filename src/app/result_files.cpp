@@ -73,9 +73,7 @@ std::string upperNames() {
   const std::string axes = "xyzabc";
   std::string text;
   for (std::size_t row = 0; row < axes.size(); ++row) {
-    for (std::size_t column = row; column < axes.size(); ++column) {
-      text += std::string(",cov_") + axes[row] + axes[column];
-    }
+    for (auto column = row; column < axes.size(); ++column) text += std::string(",cov_") + axes[row] + axes[column];
   }
   return text;
 }
@@ -87,10 +85,10 @@ std::string formatCovariances(const std::vector<FixedAxesCov>& covs) {
 }
 
 std::string formatAssociations(const std::vector<DetectionAssociation>& associations) {
-  std::string text = "frame,row,landmark\n";
-  for (const auto& [frame, row, landmark] : associations) {
-    const std::string id = landmark == kNoLandmark ? "-1" : std::to_string(landmark);
-    text += std::to_string(frame) + "," + std::to_string(row) + "," + id + "\n";
+  std::string text = "frame,row,landmark,probability\n";
+  for (const auto& [frame, row, landmark, probability] : associations) {
+    text += std::to_string(frame) + "," + std::to_string(row) + ",";
+    text += (landmark == kNoLandmark ? "-1" : std::to_string(landmark)) + "," + formatFixed(probability, 4) + "\n";
   }
   return text;
 }
@@ -135,8 +133,8 @@ std::string formatSubmaps(const std::vector<SubmapResult>& submaps) {
 
 /// What the submap evaluator spared.
 Json summarizeChecks(const std::vector<SubmapResult>& submaps) {
-  const auto checked = static_cast<double>(std::count_if(
-      submaps.begin(), submaps.end(), [](const SubmapResult& submap) { return submap.check.is_checked; }));
+  const auto isChecked = [](const SubmapResult& submap) { return submap.check.is_checked; };
+  const auto checked = static_cast<double>(std::count_if(submaps.begin(), submaps.end(), isChecked));
   const auto all = static_cast<double>(submaps.size());
   return {{"checked_submaps", static_cast<std::size_t>(checked)},
           {"skipped_share", submaps.empty() ? 0.0 : 1.0 - checked / all}};
@@ -246,7 +244,7 @@ std::optional<TrajectoryError> scoreRun(const Recording& recording, const std::v
 void writeResultFiles(const std::string& folder, const Recording& recording, const RunResult& result,
                       const SystemConfig& config, const ClassTable& classes) {
   std::vector<Pose> poses;
-  for (const StampedPose& pose : result.trajectory) poses.push_back(inOutputFrame(recording, pose.T_world_base));
+  for (const auto& [stamp, T_map_base] : result.trajectory) poses.push_back(inOutputFrame(recording, T_map_base));
   writeFileAtomically(folder + "/trajectory.txt", formatKittiTrajectory(poses));
   writeFileAtomically(folder + "/trajectory.tum", formatTumTrajectory(result.trajectory));
   writeFileAtomically(folder + "/trajectory_online.tum", formatTumTrajectory(result.online_trajectory));
@@ -281,6 +279,7 @@ void writeReport(const std::string& folder, const Recording& recording, const Ru
   report["input"].update(toJson(recording.refused));
   report["input"]["dropped"] = droppedInput(result.counters, recording.refused, recording.names);
   report["sessions"] = toJson(result.sessions);
+  report["moving"] = {{"detections_flagged", result.moving.flagged}, {"detections_found", result.moving.found}};
   report["detector_range_m"] = result.detector_range_m;
   if (result.odometry_model) report["odometry_model"] = toJson(*result.odometry_model);
   if (error) report["error"] = toJson(*error);

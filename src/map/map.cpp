@@ -114,13 +114,14 @@ MixtureLandmark Map::landmark(LandmarkId id, const LastSeen& seen) const {
   result.id = id;
   result.size = {};
   result.merged_ids = identity_.namesOf(id);
+  result.existence_prob = existenceOf(id);
   for (const LandmarkId name : result.merged_ids) {
     const auto size = sizes_.find(name);
     if (size != sizes_.end()) result.size.add(size->second);
     const MixtureLandmark* other = newest(name);
     if (other == nullptr || name == seen.name) continue;
     result.observations += other->observations;
-    result.existence_prob = std::max(result.existence_prob, other->existence_prob);
+    result.seen_standing_s = std::max(result.seen_standing_s, other->seen_standing_s);
     result.first_submap = std::min(result.first_submap, other->first_submap);
   }
   if (const LockedLandmark* lock = corrections_.lockOf(result.merged_ids)) applyLock(*lock, seen.submap, result);
@@ -128,12 +129,14 @@ MixtureLandmark Map::landmark(LandmarkId id, const LastSeen& seen) const {
   return result;
 }
 
-bool Map::isLikely(LandmarkId landmark) const {
-  const std::vector<LandmarkId> names = identity_.namesOf(landmark);
-  return std::any_of(names.begin(), names.end(), [this](LandmarkId name) {
+/// The likeliest of its names counts.
+double Map::existenceOf(LandmarkId landmark) const {
+  double existence_prob = 0.0;
+  for (const LandmarkId name : identity_.namesOf(landmark)) {
     const MixtureLandmark* known = newest(name);
-    return known != nullptr && known->existence_prob >= keep_prob_;
-  });
+    if (known != nullptr) existence_prob = std::max(existence_prob, known->existence_prob);
+  }
+  return existence_prob;
 }
 
 bool Map::isKept(LandmarkId landmark) const {
@@ -170,8 +173,14 @@ std::vector<DetectionAssociation> Map::associations() const {
   std::vector<DetectionAssociation> result;
   for (const auto& submap : submaps_) {
     for (DetectionAssociation association : submap->associations) {
-      association.landmark = identity_.landmarkOf(association.landmark);
-      if (!isKept(association.landmark)) association.landmark = kNoLandmark;
+      if (association.landmark != kNoLandmark) {
+        association.landmark = identity_.landmarkOf(association.landmark);
+        association.probability *= existenceOf(association.landmark);
+        if (!isKept(association.landmark)) {
+          association.landmark = kNoLandmark;
+          association.probability = 1.0 - association.probability;
+        }
+      }
       result.push_back(association);
     }
   }

@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/map/map_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -87,8 +88,8 @@ void transfer(StateArchive& archive, MixtureComponent& component) {
 }
 
 void transfer(StateArchive& archive, MixtureLandmark& landmark) {
-  auto& [id, components, position, class_probs, existence_prob, observations, first_submap, last_submap, merged_ids,
-         size, is_locked] = landmark;
+  auto& [id, components, position, class_probs, existence_prob, seen_standing_s, observations, first_submap,
+         last_submap, merged_ids, size, is_locked] = landmark;
   archive(id, components);
   // A landmark that nobody disputes has one component, which is all that is known of its place.
   bool is_as_component = components.size() == 1 && areEqual(components.front().position, position);
@@ -98,7 +99,7 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
     if (components.empty()) StateArchive::fail("a landmark without a place");
     position = components.front().position;
   }
-  archive(class_probs, existence_prob, observations, first_submap, last_submap, merged_ids, is_locked);
+  archive(class_probs, existence_prob, seen_standing_s, observations, first_submap, last_submap, merged_ids, is_locked);
   archive(size.detections);
   if (size.detections > 0) archive(size.mean_m);
   archive.require(size.detections >= 0 && size.detections <= kMostSized && (size.mean_m.array() >= 0.0).all(),
@@ -107,7 +108,7 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
   archive.requireClassCount(class_probs.size());
   archive.require(!components.empty(), "a landmark without a place");
   archive.require(areProbabilities(class_probs) && isProbability(existence_prob), "probabilities that are none");
-  archive.require(observations >= 0 && !first_submap.isNone() && first_submap <= last_submap,
+  archive.require(observations >= 0 && seen_standing_s >= 0.0 && !first_submap.isNone() && first_submap <= last_submap,
                   "a landmark that was seen before it was seen first");
 }
 
@@ -117,12 +118,15 @@ void transferAssociations(StateArchive& archive, std::vector<DetectionAssociatio
   DetectionAssociation last;
   for (std::size_t i = 0; i < count; ++i) {
     if (archive.isReading()) associations.emplace_back();
-    auto& [frame, row, landmark] = associations[i];
+    auto& [frame, row, landmark, probability] = associations[i];
     // Differences are small numbers, and alike from frame to frame; both are unsigned to wrap around.
     std::size_t frame_step = frame - last.frame;
     auto row_step = static_cast<std::int64_t>(row) - (frame_step == 0 ? last.row : 0);
     std::uint64_t landmark_step = landmark - last.landmark;
-    archive(frame_step, row_step, landmark_step);
+    auto thousandths = static_cast<int>(std::lround(1000.0 * probability));
+    archive(frame_step, row_step, landmark_step, thousandths);
+    archive.require(thousandths >= 0 && thousandths <= 1000, "probabilities that are none");
+    probability = 0.001 * thousandths;
     frame = last.frame + frame_step;
     const std::int64_t row_now = row_step + (frame_step == 0 ? last.row : 0);
     archive.require(row_now >= 0 && row_now <= std::numeric_limits<int>::max() && frame >= last.frame,

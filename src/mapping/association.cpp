@@ -47,8 +47,9 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
     : config_(config),
       class_count_(classes.size()),
       confusion_(classes.size(), wrongClassProb(config.association), config.association.confusion_samples),
+      clutter_(config.clutter, classes.size(), config.association.false_positive_density,
+               config.association.map_volume_m3, config.detection.max_range_m, config.detection.birth_prob),
       log_uniform_density_(-std::log(config.association.map_volume_m3) - std::log(static_cast<double>(class_count_))),
-      log_false_positives_(std::log(config.association.false_positive_density)),
       log_inlier_prob_(std::log1p(-config.association.outlier_prob)),
       log_outlier_prob_(std::log(config.association.outlier_prob)),
       gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
@@ -165,7 +166,7 @@ void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const 
     const ClassIndex object_class = landmark.mostLikelyClass();
     const ObjectNoise& own = noise_of_class(object_class);
     Eigen::Matrix3d cov = landmark.position.cov_m2 + own.cov_m2;
-    cov.diagonal().head<2>().array() += own.wander_variance_per_m * (driven_m - landmark.updated_at_m);
+    cov.diagonal().head<2>().array() += own.wander_variance_per_m * std::abs(driven_m - landmark.updated_at_m);
     if (landmark.is_from_earlier_submap) {
       cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(object_class)];
     }
@@ -181,8 +182,8 @@ void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const 
   }
 }
 
-void AssociationModel::formulate(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
-                                 double driven_m, AssociationProblem& problem) const {
+void AssociationModel::findCandidates(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                                      double driven_m, AssociationProblem& problem) const {
   problem.landmarks = static_cast<int>(hypothesis.landmarks.size());
   problem.measurements = static_cast<int>(measurements.size());
   problem.gated.resize(measurements.size());
@@ -190,12 +191,17 @@ void AssociationModel::formulate(const MapHypothesis& hypothesis, const std::vec
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     collectCandidates(hypothesis, measurements[i], driven_m, problem.reachable, problem.gated[i]);
   }
+}
+
+void AssociationModel::formulate(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
+                                 double driven_m, AssociationProblem& problem) const {
+  findCandidates(hypothesis, measurements, driven_m, problem);
   problem.costs.clear(problem.landmarks + 2 * problem.measurements);
   switch (config_.estimator) {
     case Estimator::kDpmhm:
       return addDirichletCosts(hypothesis, problem);
     case Estimator::kMhm:
-      return addLikelihoodCosts(problem);
+      return addLikelihoodCosts(measurements, problem);
     case Estimator::kUkf:
       return addDistanceCosts(hypothesis, measurements, problem);
   }
@@ -221,7 +227,8 @@ void AssociationModel::addDirichletCosts(const MapHypothesis& hypothesis, Associ
   }
 }
 
-void AssociationModel::addLikelihoodCosts(AssociationProblem& problem) const {
+void AssociationModel::addLikelihoodCosts(const std::vector<Measurement>& measurements,
+                                          AssociationProblem& problem) const {
   const AssociationConfig& association = config_.association;
   for (int i = 0; i < problem.measurements; ++i) {
     problem.costs.addRow();
@@ -229,7 +236,8 @@ void AssociationModel::addLikelihoodCosts(AssociationProblem& problem) const {
       problem.costs.add(candidate.landmark, -candidate.log_likelihood);
     }
     problem.costs.add(problem.landmarks + i, -(std::log(association.new_density) + log_uniform_density_));
-    problem.costs.add(problem.landmarks + problem.measurements + i, -logClutterDensity());
+    const double log_clutter = logClutterDensity(measurements[static_cast<std::size_t>(i)]);
+    problem.costs.add(problem.landmarks + problem.measurements + i, -log_clutter);
   }
 }
 

@@ -17,26 +17,25 @@ void describe(DetectionConfig& config, Fields& fields) {
              "How much that curve counts against what is seen, in each cell of class, range and bearing.");
   fields.add("visibility_switch_prob", config.visibility_switch_prob, "1/frame", {0.0001, 0.5},
              "Chance that a landmark in range gets hidden, or comes out again, from one frame to the next.");
-  fields.add("birth_prob", config.birth_prob, "", {0.001, 0.999}, "Existence probability of a landmark seen once.");
+  fields.add("birth_prob", config.birth_prob, "", {0.001, 0.999},
+             "Existence probability of a landmark seen once, before it is known (see clutter.learn).");
   fields.add("keep_prob", config.keep_prob, "", {0.001, 0.999}, "Landmarks below this existence do not reach the map.");
   fields.add("forget_prob", config.forget_prob, "", {1e-6, 0.999},
              "Landmarks below this existence are dropped from a hypothesis.");
 }
 
 DetectionRate::DetectionRate(const DetectionConfig& config, int class_count)
-    : config_(config), cells_(static_cast<std::size_t>(class_count * kRangeBins * kBearingBins)) {}
+    : config_(config), cells_(static_cast<std::size_t>(class_count * PolarCells::kCount)) {}
 
-int DetectionRate::cellOf(ClassIndex class_index, double range_m, const Eigen::Vector3d& position_m) const {
-  const int range = std::min(kRangeBins - 1, static_cast<int>(kRangeBins * range_m / config_.max_range_m));
-  const double cosine = range_m > 0.0 ? position_m.x() / range_m : 1.0;
-  const int bearing = cosine > 0.5 ? 0 : cosine > -0.5 ? 1 : 2;
-  return (class_index * kRangeBins + range) * kBearingBins + bearing;
+std::size_t DetectionRate::cellOf(ClassIndex class_index, const Eigen::Vector3d& position_m) const {
+  const int cell = PolarCells::cellOf(position_m, config_.max_range_m);
+  return static_cast<std::size_t>(class_index * PolarCells::kCount + cell);
 }
 
 void DetectionRate::add(ClassIndex class_index, const Eigen::Vector3d& position_m, bool is_detected) {
   const double range_m = position_m.head<2>().norm();
   if (range_m > config_.max_range_m) return;
-  Cell& cell = cells_[static_cast<std::size_t>(cellOf(class_index, range_m, position_m))];
+  Cell& cell = cells_[cellOf(class_index, position_m)];
   cell.frames += 1.0;
   if (is_detected) cell.detected += 1.0;
 }
@@ -49,7 +48,7 @@ double DetectionRate::priorProb(double range_m) const {
 double DetectionRate::prob(ClassIndex class_index, const Eigen::Vector3d& position_m) const {
   const double range_m = position_m.head<2>().norm();
   if (range_m > config_.max_range_m) return 0.0;
-  const Cell& cell = cells_[static_cast<std::size_t>(cellOf(class_index, range_m, position_m))];
+  const Cell& cell = cells_[cellOf(class_index, position_m)];
   return (cell.detected + config_.prior_samples * priorProb(range_m)) / (cell.frames + config_.prior_samples);
 }
 

@@ -61,7 +61,8 @@ MeasurementRole FrameInterpreter::roleOf(int measurement, int column) const {
   role.kind = problem.isNew(column) ? Kind::kNew : Kind::kFalsePositive;
   const double split_prob = config_.association.split_prob;
   if (config_.estimator == Estimator::kUkf || split_prob == 0.0) return role;
-  double likeliest = model_.logClutterDensity() - std::log(split_prob);
+  const Measurement& detected = expansion_.measurements[static_cast<std::size_t>(measurement)];
+  double likeliest = model_.logClutterDensity(detected) - std::log(split_prob);
   for (const Candidate& candidate : problem.gated[static_cast<std::size_t>(measurement)]) {
     const auto j = static_cast<std::size_t>(candidate.landmark);
     const bool may_be_part = is_seen_[j] != 0 && !leaf_.landmarks[j]->is_expected;

@@ -101,17 +101,19 @@ std::vector<MixtureLandmark> fuseHypotheses(const std::vector<MapHypothesis>& le
 std::vector<FusedAssociations> fuseAssociations(const std::vector<MapHypothesis>& leaves) {
   // Votes of a record count for its ancestors too; leaves share them, so each is visited once a leaf.
   std::map<std::size_t, std::vector<std::map<LandmarkId, double>>> votes;
+  std::map<std::size_t, PoseOffset> offsets;
   for (const MapHypothesis& leaf : leaves) {
     const double weight = std::exp(leaf.log_weight);
     for (const AssociationRecord* record = leaf.history.get(); record != nullptr; record = record->previous.get()) {
       auto& frame = votes[record->frame];
       frame.resize(record->landmark_of_measurement.size());
+      offsets.emplace(record->frame, record->offset);  // the first leaf's, which is the likeliest
       for (std::size_t i = 0; i < frame.size(); ++i) frame[i][record->landmark_of_measurement[i]] += weight;
     }
   }
   std::vector<FusedAssociations> fused;
   for (const auto& [frame, measurements] : votes) {
-    fused.push_back({frame, {}});
+    fused.push_back({frame, {}, offsets.at(frame)});
     for (const auto& candidates : measurements) {
       const auto best = std::max_element(candidates.begin(), candidates.end(),
                                          [](const auto& a, const auto& b) { return a.second < b.second; });

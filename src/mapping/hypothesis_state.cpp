@@ -66,9 +66,9 @@ void transferValues(StateArchive& archive, Histories& histories) {
   for (std::size_t i = 0; i < count; ++i) {
     AssociationRecord record;
     if (!archive.isReading()) record = *histories.values()[i];
-    auto& [previous, frame, landmark_of_measurement] = record;
+    auto& [previous, frame, landmark_of_measurement, offset] = record;
     histories.transferPointer(archive, previous);
-    archive(frame, landmark_of_measurement);
+    archive(frame, landmark_of_measurement, offset);
     if (archive.isReading()) histories.add(std::make_shared<const AssociationRecord>(std::move(record)));
   }
 }

@@ -15,6 +15,18 @@ constexpr double kHuberSigma = 2.0;
 
 }  // namespace
 
+Measurement inSubmap(Measurement measurement, const Pose& T_submap_base, const PoseOffset* offset) {
+  const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
+  const Eigen::Vector3d lever_m = R * measurement.position_m;
+  measurement.position_m = lever_m + T_submap_base.translation_m;
+  measurement.cov_m2 = R * measurement.cov_m2 * R.transpose();
+  measurement.R_submap_base = T_submap_base.rotation;
+  if (offset == nullptr) return measurement;
+  measurement.pose_cov_m2 = pointCov(*offset, lever_m);
+  measurement.cov_m2 += measurement.pose_cov_m2;
+  return measurement;
+}
+
 MultiHypothesisTree::MultiHypothesisTree(const MapperConfig& config, const ClassTable& classes,
                                          const RegistrationConfig& registration)
     : config_(config),
@@ -49,16 +61,9 @@ void MultiHypothesisTree::step(const TreeInput& input, Rng& rng) {
 
 void MultiHypothesisTree::measureFrom(const Pose& T_submap_base, const PoseOffset* offset, const TreeInput& input,
                                       std::vector<Measurement>& measurements) const {
-  const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
   measurements = input.measurements;
   for (Measurement& measurement : measurements) {
-    const Eigen::Vector3d lever_m = R * measurement.position_m;
-    measurement.position_m = lever_m + T_submap_base.translation_m;
-    measurement.cov_m2 = R * measurement.cov_m2 * R.transpose();
-    measurement.R_submap_base = T_submap_base.rotation;
-    if (offset == nullptr) continue;
-    measurement.pose_cov_m2 = pointCov(*offset, lever_m);
-    measurement.cov_m2 += measurement.pose_cov_m2;
+    measurement = inSubmap(std::move(measurement), T_submap_base, offset);
   }
 }
 
@@ -145,6 +150,7 @@ MapHypothesis MultiHypothesisTree::makeChild(const FrameInterpretation& interpre
   record->previous = parent.history;
   record->frame = input.frame;
   record->landmark_of_measurement = interpretation.landmark_of_measurement;
+  record->offset = child.offset;
   child.history = std::move(record);
   return child;
 }

@@ -38,6 +38,11 @@ void LandmarkPropagation::clear() {
   resting_.clear();
 }
 
+bool LandmarkPropagation::carries(LandmarkId landmark) const {
+  const auto isOfId = [landmark](const HypothesisLandmark& known) { return known->id == landmark; };
+  return findLandmark(landmark, landmarks_) != nullptr || std::any_of(resting_.begin(), resting_.end(), isOfId);
+}
+
 void LandmarkPropagation::endSubmap(SubmapId submap, const Pose& T_odom_submap,
                                     const std::vector<MixtureLandmark>& landmarks, const MapHypothesis& best) {
   T_odom_last_ = T_odom_submap;

@@ -63,10 +63,10 @@ HypothesisLandmark LandmarkTracking::updated(const AssociationModel& model, cons
   }
   result->is_from_earlier_submap = false;
   result->last_submap = input.submap;
-  // A detection where the landmark is speaks for it against clutter, which would be anywhere in the volume.
+  // A detection where the landmark is speaks for it against clutter, which would be anywhere.
   Existence existence = known.existence;
   applyHit(existence, detection_prob, config_.detection.visibility_switch_prob,
-           candidate.log_likelihood - model.logClutterDensity(), kMaxLogExistenceOdds);
+           candidate.log_likelihood - model.logClutterDensity(detected), kMaxLogExistenceOdds);
   return {std::move(result), existence};
 }
 
@@ -81,7 +81,7 @@ HypothesisLandmark LandmarkTracking::begun(const AssociationModel& model, const 
   landmark->last_submap = input.submap;
   landmark->updated_at_m = input.driven_m;
   Existence existence;
-  existence.log_odds = logit(config_.detection.birth_prob);
+  existence.log_odds = logit(model.birthProb(measurement));
   return {std::move(landmark), existence};
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "semantic_mht_slam/mapping/fusion.h"
@@ -12,9 +12,6 @@
 
 namespace semantic_mht_slam {
 namespace {
-
-constexpr double kCertainExistence = 0.95;  // of landmarks that tell how often what exists is detected
-constexpr double kCertainClass = 0.99;      // of landmarks that tell what a class is taken for
 
 /// Deviations along a ray, across it in the plane and vertically.
 Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& ray_m) {
@@ -31,6 +28,10 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
 double partsGate(const MapperConfig& config) {
   const double factor = config.association.outlier_prob > 0.0 ? config.association.outlier_factor : 1.0;
   return config.duplicates.gate_mahalanobis_sq * 0.5 * (1.0 + factor * factor);
+}
+
+bool isEarlier(const DetectionAssociation& a, const DetectionAssociation& b) {
+  return std::tie(a.frame, a.row) < std::tie(b.frame, b.row);
 }
 
 /// Detections belong to the first name of their landmark.
@@ -55,10 +56,13 @@ Mapper::Mapper(const MapperConfig& config, const ClassTable& classes, const Regi
       calibration_(config.calibration, classes),
       bias_(config.bias, classes),
       odometry_(config.odometry),
+      movers_(config.moving, classes.size(), config.association.max_gate_m),
       tree_(config, classes, registration),
       propagation_(config) {}
 
 Detections Mapper::calibrated(Detections detections) const {
+  detections.erase(std::remove_if(detections.begin(), detections.end(), [](const Detection& d) { return d.is_moving; }),
+                   detections.end());
   for (Detection& detection : detections) {
     detection = bias_.corrected(detection);
     detection.cov_m2 = detectorCov(detection);
@@ -114,29 +118,6 @@ std::shared_ptr<const std::vector<ClassNoise>> Mapper::noiseOfClasses(double ran
   return known;
 }
 
-bool Mapper::learnsConfusion() const {
-  return config_.semantics && config_.association.learn_confusion &&
-         config_.association.class_model == ClassModel::kConfusion;
-}
-
-void Mapper::learnConfusion(const std::vector<FusedAssociations>& associations,
-                            const std::vector<MixtureLandmark>& landmarks) {
-  std::map<LandmarkId, ClassIndex> certain;
-  for (const MixtureLandmark& landmark : landmarks) {
-    const bool is_certain = landmark.existence_prob >= kCertainExistence &&
-                            landmark.class_probs.maxCoeff() >= kCertainClass && landmark.last_submap == id_;
-    if (is_certain) certain[landmark.id] = landmark.mostLikelyClass();
-  }
-  for (const std::size_t k : spaced_) {
-    const std::vector<LandmarkId>& ids = associations.at(k).landmark_of_measurement;
-    const Detections& detections = frames_[k].detections;
-    for (std::size_t i = 0; i < detections.size(); ++i) {
-      const auto found = certain.find(ids[i]);
-      if (found != certain.end()) tree_.confusion().add(found->second, detections[i].class_index);
-    }
-  }
-}
-
 void Mapper::begin(const Pose& T_odom_submap, EarlierMap earlier_map) {
   if (is_open_) throw std::logic_error("Mapper: a submap begins in another one");
   id_ = id_.isNone() ? SubmapId(0) : SubmapId(id_.index() + 1);
@@ -160,12 +141,15 @@ void Mapper::add(Frame frame, Rng& rng) {
   input.T_submap_last = T_submap_base(frames_.empty() ? frame : frames_.back());
   input.T_submap_base = T_submap_base(frame);
   input.odometry = odometry_.model();
+  dropMoving(frame);
   calibration_.add(frame.T_odom_base, frame.detections);
   noise_of_class_ = {};
   for (const Detection& detection : frame.detections) {
     input.measurements.push_back(makeMeasurement(detection));
     input.measurements.back().id_if_new = next_landmark_++;
   }
+  if (!frames_.empty()) driven_m_ += motionOf(frames_.back().T_odom_base.inverse() * frame.T_odom_base).way_m;
+  trackMovable(frame, input.measurements);
   const auto is_far = [&](const Frame& other) {
     return (frame.T_odom_base.translation_m - other.T_odom_base.translation_m).norm() >= frameSpacing_m();
   };
@@ -184,54 +168,9 @@ void Mapper::goOnAfter(SubmapId newest, LandmarkId newest_landmark) {
 void Mapper::forgetSurroundings() {
   if (is_open_) throw std::logic_error("Mapper: surroundings are forgotten between submaps");
   propagation_.clear();
+  spans_.clear();
+  movers_.clear();
   calibration_.forgetFrames();
-}
-
-void Mapper::learnDetectionRate(const std::vector<FusedAssociations>& associations,
-                                const std::vector<MixtureLandmark>& landmarks) {
-  std::vector<Pose> T_submap_base;
-  for (const Frame& frame : frames_) T_submap_base.push_back(this->T_submap_base(frame));
-  std::set<std::pair<LandmarkId, std::size_t>> seen;
-  for (std::size_t k = 0; k < associations.size(); ++k) {
-    for (const LandmarkId id : associations[k].landmark_of_measurement) seen.emplace(id, k);
-  }
-  for (const MixtureLandmark& landmark : landmarks) {
-    if (landmark.existence_prob < kCertainExistence || landmark.last_submap != id_) continue;
-    const ClassIndex class_index = landmark.mostLikelyClass();
-    for (std::size_t k = 0; k < T_submap_base.size(); ++k) {
-      const Pose& T = T_submap_base[k];
-      const Eigen::Vector3d position_m = T.rotation.conjugate() * (landmark.position.mean_m - T.translation_m);
-      tree_.detectionRate().add(class_index, position_m, seen.count({landmark.id, k}) > 0);
-    }
-  }
-}
-
-BiasStretch Mapper::biasStretch(const std::vector<FusedAssociations>& associations) const {
-  BiasStretch stretch;
-  for (const std::size_t k : spaced_) {
-    const int index = static_cast<int>(stretch.T_stretch_base.size());
-    stretch.T_stretch_base.push_back(T_submap_base(frames_[k]));
-    const std::vector<LandmarkId>& landmarks = associations.at(k).landmark_of_measurement;
-    const Detections& detections = frames_[k].detections;
-    for (std::size_t i = 0; i < detections.size(); ++i) {
-      if (landmarks[i] == kNoLandmark) continue;
-      const Detection& detection = detections[i];
-      Eigen::Matrix3d cov = detectorCov(detection);
-      cov.diagonal().head<2>().array() += frameSpacing_m() * calibration_.wanderVariancePerMetre(detection.class_index);
-      stretch.observations.push_back({index, detection.position_m, cov, detection.class_index, landmarks[i]});
-    }
-  }
-  return stretch;
-}
-
-/// What a submap teaches about the detector and the odometry.
-void Mapper::learn(const std::vector<FusedAssociations>& associations, const std::vector<MixtureLandmark>& landmarks) {
-  if (config_.bias.enabled) {
-    bias_.add(biasStretch(associations), odometry_.model().noise);
-  }
-  learnOdometry(associations);
-  learnDetectionRate(associations, landmarks);
-  if (learnsConfusion()) learnConfusion(associations, landmarks);
 }
 
 FinishedSubmap Mapper::finish() {
@@ -245,14 +184,16 @@ FinishedSubmap Mapper::finish() {
   submap.T_odom_submap = T_odom_submap_;
   const auto fused_associations = fuseAssociations(tree_.leaves());
   for (std::size_t k = 0; k < fused_associations.size(); ++k) {
-    const auto& [frame, landmark_of_measurement] = fused_associations[k];
-    for (std::size_t i = 0; i < landmark_of_measurement.size(); ++i) {
-      submap.associations.push_back({frame, frames_[k].detections[i].row, landmark_of_measurement[i]});
+    const std::vector<LandmarkId>& ids = fused_associations[k].landmark_of_measurement;
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      submap.associations.push_back({fused_associations[k].frame, frames_[k].detections[i].row, ids[i]});
     }
   }
   std::vector<MixtureLandmark> landmarks = fuseHypotheses(tree_.leaves());
+  judgeMotion(fused_associations, landmarks);
   learn(fused_associations, landmarks);
-  finished.frames = std::exchange(frames_, {});
+  const std::vector<Frame> measured = std::exchange(frames_, {});  // as the detector has them
+  finished.frames = measured;
   spaced_.clear();
   stations_.clear();
   for (Frame& frame : finished.frames) frame.detections = calibrated(std::move(frame.detections));
@@ -269,11 +210,18 @@ FinishedSubmap Mapper::finish() {
     useFirstNames(submap.duplicates, submap.associations);
     submap.near = findNearLandmarks(finished.frames, submap.associations, partsGate(config_));
   }
+  judgeAssociations(fused_associations, measured, landmarks, submap.associations);
+  submap.associations.insert(submap.associations.end(), moving_.begin(), moving_.end());
+  std::stable_sort(submap.associations.begin(), submap.associations.end(), isEarlier);
   finished.alignment = tree_.mapBranching().conclude(tree_.leaves());
   for (const MixtureLandmark& landmark : landmarks) {
     if (landmark.last_submap == id_) submap.landmarks.push_back(landmark);
   }
   propagation_.endSubmap(id_, T_odom_submap_, landmarks, tree_.leaves().front());
+  forgetSpans();
+  track_of_detection_.clear();
+  moving_.clear();
+  movers_.forgetEnded();
   return finished;
 }
 

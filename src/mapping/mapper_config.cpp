@@ -73,6 +73,8 @@ MapperConfig defaultsOf(Estimator estimator) {
   config.association.count_prior = CountPrior::kNone;
   config.association.outlier_prob = 0.0;
   config.association.learn_confusion = false;
+  config.clutter.learn = false;
+  config.moving.find = false;
   config.association.split_prob = 0.0;
   config.submap.correct_pose = false;
   config.duplicates.merge = false;
@@ -94,6 +96,8 @@ void describe(MapperConfig& config, Fields& fields) {
   describe(config.tree, fields);
   describe(config.association, fields);
   fields.group("detection", config.detection);
+  fields.group("clutter", config.clutter);
+  fields.group("moving", config.moving);
   fields.group("submap", config.submap);
   fields.group("odometry", config.odometry);
   fields.group("calibration", config.calibration);

@@ -108,6 +108,18 @@ void ClassConfusion::transfer(StateArchive& archive) {
   for (ClassIndex object = 0; object < class_count_; ++object) evaluate(object);
 }
 
+void ClutterModel::Counts::transfer(StateArchive& archive) {
+  archive(clutter, births);
+  archive.require(clutter >= 0.0 && births >= 0.0, "a negative count");
+}
+
+void ClutterModel::transfer(StateArchive& archive) {
+  transferFixed(archive, of_class_);
+  transferFixed(archive, of_cell_);
+  archive(frames_);
+  archive.require(frames_ >= 0.0, "a negative count");
+}
+
 void MapBranching::transfer(StateArchive& archive) {
   auto& [landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = map_;
   archive(landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad);
@@ -119,7 +131,7 @@ void MapBranching::transfer(StateArchive& archive) {
 }
 
 void MultiHypothesisTree::transfer(StateArchive& archive) {
-  archive(tracking_.detectionRate(), model_.confusion(), branching_);
+  archive(tracking_.detectionRate(), model_.confusion(), model_.clutter(), branching_);
   transferLeaves(archive, leaves_);
   archive(next_hypothesis_id_);
   for (const MapHypothesis& leaf : leaves_) {
@@ -201,10 +213,24 @@ void StationKeeping::transfer(StateArchive& archive) {
 void Mapper::transfer(StateArchive& archive) {
   archive(calibration_, bias_, odometry_, tree_);
   archive(next_landmark_, id_, is_open_, T_odom_submap_, motion_, frames_, spaced_, stations_, propagation_);
+  archive(movers_, track_of_detection_, spans_, driven_m_, moving_counts_);
+  transferAssociations(archive, moving_);
   for (const std::size_t k : spaced_) {
     if (k >= frames_.size()) StateArchive::fail("a number names no frame of the open submap");
   }
   if (archive.isReading()) requireOpenSubmap(archive);
+}
+
+/// Whether the tracks are those of the detections of these frames.
+bool Mapper::areTracked(const std::vector<Frame>& frames) const {
+  if (track_of_detection_.size() != frames.size()) return false;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (track_of_detection_[k].size() != frames[k].detections.size()) return false;
+    for (const auto& track : track_of_detection_[k]) {
+      if (track && !movers_.knows(*track)) return false;
+    }
+  }
+  return true;
 }
 
 /// The open submap: its frames are those that its hypotheses tell of.
@@ -215,6 +241,7 @@ void Mapper::requireOpenSubmap(const StateArchive& archive) const {
                       areRising(spaced_, [](std::size_t k) { return k; }),
                   "frames that are not in order");
   archive.require(stations_.fits(frames_), "a number names no detection of the open submap");
+  archive.require(areTracked(frames_), "tracks of other detections than the submap has");
   if (!is_open_) return;
   std::set<const AssociationRecord*> known;  // branches share their beginnings
   for (const MapHypothesis& leaf : tree_.leaves()) {

@@ -167,6 +167,8 @@ Landmark toMessage(const MixtureLandmark& landmark, const ClassTable& classes) {
     fillGaussian(component.position, message.components.back().mean, message.components.back().covariance);
   }
   message.existence_prob = landmark.existence_prob;
+  message.movable = !classes[landmark.mostLikelyClass()].is_static;
+  message.seen_standing = landmark.seen_standing_s;
   message.observations = static_cast<std::uint32_t>(landmark.observations);
   message.undecided = landmark.isUndecided();
   message.first_submap = static_cast<std::uint32_t>(landmark.first_submap.index());

@@ -39,6 +39,7 @@ std::string historyOf(const Landmark& landmark) {
   text += landmark.first_submap == landmark.last_submap
               ? "in submap " + std::to_string(landmark.last_submap)
               : "in submaps " + std::to_string(landmark.first_submap) + " to " + std::to_string(landmark.last_submap);
+  if (landmark.movable) text += ", standing for " + formatFixed(landmark.seen_standing, 1) + " s";
   if (landmark.merged_ids.empty()) return text;
   std::vector<std::string> ids;
   for (const std::uint64_t id : landmark.merged_ids) ids.push_back(std::to_string(id));

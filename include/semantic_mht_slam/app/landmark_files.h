@@ -23,7 +23,7 @@ void requireUsable(const MapOrigin& origin);
 /// the ellipsoid.
 Eigen::Vector2d toLatitudeLongitude(const MapOrigin& origin, const Eigen::Vector3d& position_m);
 
-/// id,class,x,y,z,existence,observations,sxx,sxy,sxz,syy,syz,szz; map frame, m, m^2.
+/// id,class,x,y,z,existence,observations,sxx,sxy,sxz,syy,syz,szz,movable,seen_standing; map frame, m, m^2, s.
 std::string landmarksCsv(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes);
 
 /// GeoJSON (RFC 7946), a point a landmark. Without an origin the coordinates are metres of the map frame, which the

@@ -43,6 +43,7 @@ struct RunResult {
   double seconds = 0.0;            ///< wall time of the run, without reading and writing files
   std::vector<SessionSummary> sessions;         ///< of the map that the run began with, too
   double detector_range_m = 0.0;                ///< that all lengths follow which are not set
+  MovingCounts moving;                          ///< of the map that the run began with, too
   std::optional<OdometryModel> odometry_model;  ///< as it was learned; none without map
 };
 

@@ -43,7 +43,8 @@ struct MixtureLandmark {
   Gaussian3 position;                        ///< moments of the mixture
   ClassProbs class_probs;
   double existence_prob = 0.0;
-  int observations = 0;  ///< detections assigned to it in the most likely hypothesis that has it
+  double seen_standing_s = 0.0;  ///< longest time from its first to its last detection in a pass
+  int observations = 0;          ///< detections assigned to it in the most likely hypothesis that has it
   SubmapId first_submap;
   SubmapId last_submap;                ///< that saw it
   std::vector<LandmarkId> merged_ids;  ///< other names of it, rising

@@ -133,7 +133,8 @@ class Map {
   const MixtureLandmark* newest(LandmarkId name) const;
   MixtureLandmark landmark(LandmarkId id, const LastSeen& seen) const;
   void applyLock(const LockedLandmark& lock, SubmapId submap, MixtureLandmark& landmark) const;
-  bool isLikely(LandmarkId landmark) const;
+  double existenceOf(LandmarkId landmark) const;
+  bool isLikely(LandmarkId landmark) const { return existenceOf(landmark) >= keep_prob_; }
   bool isKept(LandmarkId landmark) const;
   void requireKeyframesOfSubmaps(const StateArchive& archive) const;
   void restore();

@@ -16,6 +16,8 @@ struct DetectionAssociation {
   std::size_t frame = 0;
   int row = 0;                        ///< of the detection in its frame
   LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a false positive
+  /// That it is of that landmark if that is there, or that it is of nothing; in thousandths, as files keep it.
+  double probability = 1.0;
 };
 
 /// Two names of one landmark.

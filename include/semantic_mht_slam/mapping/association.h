@@ -4,6 +4,7 @@
 
 #include "semantic_mht_slam/common/assignment.h"
 #include "semantic_mht_slam/mapping/class_confusion.h"
+#include "semantic_mht_slam/mapping/clutter_model.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
 #include "semantic_mht_slam/models/class_table.h"
@@ -53,6 +54,10 @@ class AssociationModel {
   void formulate(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements, double driven_m,
                  AssociationProblem& problem) const;
 
+  /// The part of that which tells what landmarks are in the gate of each measurement.
+  void findCandidates(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements, double driven_m,
+                      AssociationProblem& problem) const;
+
   /// log P(detected class | class probabilities).
   double logClassLikelihood(ClassIndex detected, const ClassProbs& probs) const;
 
@@ -74,8 +79,18 @@ class AssociationModel {
   /// log density of a detection that may be of any class and anywhere in the map's volume, 1/m^3.
   double logUniformDensity() const { return log_uniform_density_; }
 
-  /// log density of the false positives of a frame.
-  double logClutterDensity() const { return log_uniform_density_ + log_false_positives_; }
+  /// How often detections show nothing, as it is known now.
+  ClutterModel& clutter() { return clutter_; }
+
+  /// log of the expected number of false positives of its class in a frame and a cubic metre where a measurement is.
+  double logClutterDensity(const Measurement& measurement) const {
+    return clutter_.logDensity(measurement.class_index, measurement.ray_m);
+  }
+
+  /// Existence probability of a landmark that a measurement begins.
+  double birthProb(const Measurement& measurement) const {
+    return clutter_.birthProb(measurement.class_index, measurement.ray_m);
+  }
 
  private:
   void collectReachable(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
@@ -90,17 +105,17 @@ class AssociationModel {
                        Candidate& candidate) const;
   double logCountPrior(int observations) const;
   void addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const;
-  void addLikelihoodCosts(AssociationProblem& problem) const;
+  void addLikelihoodCosts(const std::vector<Measurement>& measurements, AssociationProblem& problem) const;
   void addDistanceCosts(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
                         AssociationProblem& problem) const;
 
   MapperConfig config_;
   int class_count_;
   ClassConfusion confusion_;
+  ClutterModel clutter_;
   std::vector<double> log_class_prior_;
   std::vector<double> transition_variance_m2_;
   double log_uniform_density_;
-  double log_false_positives_;
   double log_inlier_prob_;
   double log_outlier_prob_;  ///< -infinity: no centroids are far off
   double gate_mahalanobis_sq_;

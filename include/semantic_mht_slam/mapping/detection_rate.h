@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "semantic_mht_slam/common/config.h"
+#include "semantic_mht_slam/mapping/polar_cells.h"
 #include "semantic_mht_slam/models/class_table.h"
 
 namespace semantic_mht_slam {
@@ -44,9 +45,6 @@ class DetectionRate {
   void transfer(StateArchive& archive);
 
  private:
-  static constexpr int kRangeBins = 5;
-  static constexpr int kBearingBins = 3;  ///< ahead, abeam, behind
-
   struct Cell {
     double detected = 0.0;
     double frames = 0.0;
@@ -54,7 +52,7 @@ class DetectionRate {
     void transfer(StateArchive& archive);
   };
 
-  int cellOf(ClassIndex class_index, double range_m, const Eigen::Vector3d& position_m) const;
+  std::size_t cellOf(ClassIndex class_index, const Eigen::Vector3d& position_m) const;
   double priorProb(double range_m) const;
 
   DetectionConfig config_;

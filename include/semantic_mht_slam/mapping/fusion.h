@@ -17,6 +17,7 @@ std::vector<MixtureLandmark> fuseHypotheses(const std::vector<MapHypothesis>& le
 struct FusedAssociations {
   std::size_t frame = 0;
   std::vector<LandmarkId> landmark_of_measurement;
+  PoseOffset offset;  ///< of the odometry at the frame, by the likeliest leaf
 };
 
 /// The landmark with the largest summed weight for each measurement, frame by frame from the beginning of the history.

@@ -104,6 +104,7 @@ struct AssociationRecord {
   std::shared_ptr<const AssociationRecord> previous;
   std::size_t frame = 0;
   std::vector<LandmarkId> landmark_of_measurement;  ///< kNoLandmark: false positive
+  PoseOffset offset;                                ///< of the odometry, after the frame
 };
 
 /// A leaf of the hypothesis tree: a map, and the associations that led to it.

@@ -15,6 +15,9 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
+/// A measurement of the base frame as it is in the submap's; with an offset, its uncertainty is in the covariance, too.
+Measurement inSubmap(Measurement measurement, const Pose& T_submap_base, const PoseOffset* offset);
+
 /// The multiple-hypothesis tree of one submap (paper, section II): its leaves, weighted, by falling weight.
 class MultiHypothesisTree {
  public:
@@ -33,8 +36,12 @@ class MultiHypothesisTree {
   /// What is known of the probability of detection; learns from finished submaps.
   DetectionRate& detectionRate() { return tracking_.detectionRate(); }
 
-  /// How the detector confuses classes; learns from finished submaps.
+  /// How the detector confuses classes, and how often it shows nothing; both learn from finished submaps.
   ClassConfusion& confusion() { return model_.confusion(); }
+  ClutterModel& clutter() { return model_.clutter(); }
+
+  /// How likely associations are.
+  const AssociationModel& model() const { return model_; }
 
   /// Where the submap lies in the earlier map.
   const MapBranching& mapBranching() const { return branching_; }

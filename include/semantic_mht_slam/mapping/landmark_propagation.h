@@ -28,6 +28,9 @@ class LandmarkPropagation {
   /// Forgets all of them.
   void clear();
 
+  /// Whether it carries a landmark on.
+  bool carries(LandmarkId landmark) const;
+
   /// All that it keeps (see `StateArchive`).
   void transfer(StateArchive& archive);
 

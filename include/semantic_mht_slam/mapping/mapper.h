@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,12 +16,32 @@
 #include "semantic_mht_slam/mapping/hypothesis_tree.h"
 #include "semantic_mht_slam/mapping/landmark_propagation.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/mapping/moving_objects.h"
 #include "semantic_mht_slam/mapping/station_keeping.h"
 #include "semantic_mht_slam/models/frame.h"
 
 namespace semantic_mht_slam {
 
 class StateArchive;
+
+/// When a landmark was seen in one pass, and whether it moved.
+struct LandmarkSpan {
+  SubmapId submap;  ///< that saw it last
+  Stamp first = 0;
+  Stamp last = 0;
+  int sightings = 0;
+  double moving = 0.0;  ///< sum of the probabilities that what the sightings show moves
+
+  void transfer(StateArchive& archive);
+};
+
+/// Detections that show what moves, since the beginning.
+struct MovingCounts {
+  std::size_t flagged = 0;  ///< the detector said so, and they were left out
+  std::size_t found = 0;    ///< their tracks say so, and they belong to no landmark
+
+  void transfer(StateArchive& archive);
+};
 
 /// What comes out of a submap.
 struct FinishedSubmap {
@@ -73,8 +94,10 @@ class Mapper {
     return std::max(bias_.scaleStddev(), odometry_.model().systematic.scale_translation.stddev);
   }
 
-  /// The detections without the bias of their classes' centroids, and with the noise of their centroids stated, both as
-  /// learned so far.
+  const MovingCounts& movingCounts() const { return moving_counts_; }
+
+  /// The detections without those that move, without the bias of their classes' centroids, and with the noise of their
+  /// centroids stated, both as learned so far.
   Detections calibrated(Detections detections) const;
 
   /// All that a mapper of the same class table needs to go on as if it had never stopped, the open submap included
@@ -89,6 +112,7 @@ class Mapper {
 
  private:
   void requireOpenSubmap(const StateArchive& archive) const;
+  bool areTracked(const std::vector<Frame>& frames) const;
   Pose T_submap_base(const Frame& frame) const { return T_odom_submap_.inverse() * frame.T_odom_base; }
   Eigen::Matrix3d detectorCov(const Detection& detection) const;
   Measurement makeMeasurement(const Detection& detection);
@@ -96,6 +120,14 @@ class Mapper {
   void learn(const std::vector<FusedAssociations>& associations, const std::vector<MixtureLandmark>& landmarks);
   void learnDetectionRate(const std::vector<FusedAssociations>& associations,
                           const std::vector<MixtureLandmark>& landmarks);
+  void dropMoving(Frame& frame);
+  void trackMovable(const Frame& frame, const std::vector<Measurement>& measurements);
+  double movingProb(std::size_t frame, std::size_t detection) const;
+  void judgeMotion(const std::vector<FusedAssociations>& associations, std::vector<MixtureLandmark>& landmarks);
+  void judgeAssociations(const std::vector<FusedAssociations>& fused, const std::vector<Frame>& frames,
+                         const std::vector<MixtureLandmark>& landmarks,
+                         std::vector<DetectionAssociation>& associations);
+  void forgetSpans();
   bool learnsConfusion() const;
   void learnConfusion(const std::vector<FusedAssociations>& associations,
                       const std::vector<MixtureLandmark>& landmarks);
@@ -110,6 +142,7 @@ class Mapper {
   DetectorCalibration calibration_;
   CentroidBias bias_;
   OdometryLearning odometry_;
+  MovingObjects movers_;
   MultiHypothesisTree tree_;
   LandmarkPropagation propagation_;
   /// Of the present frame, by range; null until a detection there asks for it.
@@ -122,6 +155,12 @@ class Mapper {
   std::vector<Frame> frames_;        ///< of this submap, as they came
   std::vector<std::size_t> spaced_;  ///< frames so far apart that each sees another error of a centroid
   StationKeeping stations_;
+  /// Of each detection of each frame of this submap; none for classes that stand.
+  std::vector<std::vector<std::optional<MovingObjects::TrackId>>> track_of_detection_;
+  std::vector<DetectionAssociation> moving_;  ///< detections of this submap that the detector says move
+  std::map<LandmarkId, LandmarkSpan> spans_;  ///< of the landmarks that are carried on
+  double driven_m_ = 0.0;                     ///< up to the newest frame
+  MovingCounts moving_counts_;
 };
 
 }  // namespace semantic_mht_slam

@@ -2,10 +2,12 @@
 
 #include "semantic_mht_slam/common/config.h"
 #include "semantic_mht_slam/mapping/centroid_bias.h"
+#include "semantic_mht_slam/mapping/clutter_model.h"
 #include "semantic_mht_slam/mapping/detection_rate.h"
 #include "semantic_mht_slam/mapping/detector_calibration.h"
 #include "semantic_mht_slam/mapping/duplicate_merging.h"
 #include "semantic_mht_slam/mapping/earlier_map.h"
+#include "semantic_mht_slam/mapping/moving_objects.h"
 #include "semantic_mht_slam/mapping/odometry_learning.h"
 
 namespace semantic_mht_slam {
@@ -73,6 +75,8 @@ struct MapperConfig {
   MeasurementModel measurement_model = MeasurementModel::kAdditive;
   AssociationConfig association;
   DetectionConfig detection;
+  ClutterConfig clutter;
+  MovingConfig moving;
   TreeConfig tree;
   SubmapConfig submap;
   OdometryConfig odometry;
@@ -84,8 +88,8 @@ struct MapperConfig {
 
 /// The defaults that belong to an estimator. The baselines are those of the paper: they have neither the Dirichlet
 /// process's count prior nor what goes beyond the paper (pose correction, heavy tails, split objects, merging of
-/// duplicates, centroid bias, learned confusion of classes, alignment with an earlier map); each of these can be
-/// switched on for them by its own key.
+/// duplicates, centroid bias, learned confusion of classes and density of clutter, alignment with an earlier map); each
+/// of these can be switched on for them by its own key.
 MapperConfig defaultsOf(Estimator estimator);
 
 void describe(AssociationConfig& config, Fields& fields);

@@ -1,0 +1,151 @@
+#include "semantic_mht_slam/mapping/association_posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "semantic_mht_slam/common/log_math.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+constexpr int kIterations = 20;
+constexpr double kConverged = 1e-4;
+constexpr double kLargestLogOdds = 50.0;
+constexpr double kLeastProb = 1e-6;
+constexpr double kLowDetectionProb = 0.01;
+
+/// Its place is that of the measurement, which says nothing of whether it is there.
+bool isOnlySighting(const HypothesisLandmark& landmark) {
+  return landmark->observations < 2;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> associationMarginals(const std::vector<std::vector<AssociationOdds>>& odds,
+                                                      int landmarks) {
+  std::vector<std::vector<double>> free;   // messages: how free the landmark is for the measurement
+  std::vector<std::vector<double>> asked;  // how much the measurement asks for the landmark
+  for (const auto& row : odds) {
+    free.emplace_back(row.size(), 1.0);
+    asked.emplace_back(row.size(), 0.0);
+  }
+  std::vector<double> asked_of(static_cast<std::size_t>(landmarks));
+  double change = 1.0;
+  for (int iteration = 0; iteration < kIterations && change > kConverged; ++iteration) {
+    std::fill(asked_of.begin(), asked_of.end(), 0.0);
+    for (std::size_t i = 0; i < odds.size(); ++i) {
+      double all = 1.0;
+      for (std::size_t c = 0; c < odds[i].size(); ++c) all += odds[i][c].sole * free[i][c] + odds[i][c].part;
+      for (std::size_t c = 0; c < odds[i].size(); ++c) {
+        asked[i][c] = odds[i][c].sole / (all - odds[i][c].sole * free[i][c]);
+        asked_of[static_cast<std::size_t>(odds[i][c].landmark)] += asked[i][c];
+      }
+    }
+    change = 0.0;
+    for (std::size_t i = 0; i < odds.size(); ++i) {
+      for (std::size_t c = 0; c < odds[i].size(); ++c) {
+        const double others = asked_of[static_cast<std::size_t>(odds[i][c].landmark)] - asked[i][c];
+        const double now = 1.0 / (1.0 + std::max(0.0, others));
+        change = std::max(change, std::abs(now - free[i][c]));
+        free[i][c] = now;
+      }
+    }
+  }
+  std::vector<std::vector<double>> marginals = free;
+  for (std::size_t i = 0; i < odds.size(); ++i) {
+    double all = 1.0;
+    for (std::size_t c = 0; c < odds[i].size(); ++c) {
+      marginals[i][c] = odds[i][c].sole * free[i][c] + odds[i][c].part;
+      all += marginals[i][c];
+    }
+    for (double& marginal : marginals[i]) marginal /= all;
+  }
+  return marginals;
+}
+
+AssociationPosterior::AssociationPosterior(const MapperConfig& config, const AssociationModel& model,
+                                           const DetectionRate& rate,
+                                           std::vector<std::pair<MixtureLandmark, double>> landmarks)
+    : config_(config), model_(model), rate_(rate) {
+  for (const auto& [landmark, seen_at_m] : landmarks) {
+    auto tracked = std::make_shared<TrackedLandmark>(trackedFrom(landmark));
+    tracked->updated_at_m = seen_at_m;
+    tracked->is_from_earlier_submap = true;  // seen from elsewhere
+    Existence existence;
+    existence.log_odds = logit(std::clamp(landmark.existence_prob, kLeastProb, 1.0 - kLeastProb));
+    map_.landmarks.push_back({std::move(tracked), existence});
+  }
+}
+
+double AssociationPosterior::detectionProb(const Measurement& measurement, const HypothesisLandmark& landmark) const {
+  const double prob = rate_.prob(landmark->mostLikelyClass(), measurement.ray_m);
+  return std::clamp(prob, kLowDetectionProb, 1.0 - kLowDetectionProb);
+}
+
+/// Of the landmark that a measurement was assigned to, existence is taken for given: it rests on the measurement.
+AssociationOdds AssociationPosterior::oddsOf(const Measurement& measurement, const Candidate& candidate,
+                                             bool is_own) const {
+  const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(candidate.landmark)];
+  const double exists = is_own ? 1.0 : logistic(landmark.existence.log_odds);
+  const double detected = detectionProb(measurement, landmark);
+  const double log_clutter = model_.logClutterDensity(measurement);
+  const auto odds = [&](double log_likelihood) {
+    return std::exp(std::min(kLargestLogOdds, log_likelihood - log_clutter));
+  };
+  AssociationOdds result{candidate.landmark, 0.0, 0.0};
+  if (is_own && isOnlySighting(landmark)) {
+    result.sole = std::exp(landmark.existence.log_odds);
+  } else {
+    result.sole = exists * detected / (1.0 - exists * detected) * odds(candidate.log_likelihood);
+  }
+  result.part = exists * detected * config_.association.split_prob * odds(candidate.log_part_likelihood);
+  return result;
+}
+
+/// Of those centroids that are far off, so many again are anywhere in the largest gate.
+double AssociationPosterior::oddsFarOff(const Measurement& measurement, const HypothesisLandmark& landmark) const {
+  const double gate_m = config_.association.max_gate_m;
+  const double outlier_prob = config_.association.outlier_prob;
+  const double density_per_m3 = outlier_prob * outlier_prob / (4.0 / 3.0 * M_PI * gate_m * gate_m * gate_m);
+  const double log_class = model_.logClassLikelihood(measurement.class_index, landmark->class_probs);
+  const double detected = detectionProb(measurement, landmark);
+  return detected / (1.0 - detected) * density_per_m3 * std::exp(log_class - model_.logClutterDensity(measurement));
+}
+
+std::vector<JudgedAssociation> AssociationPosterior::judge(const std::vector<Measurement>& measurements,
+                                                           double driven_m, const std::vector<LandmarkId>& assigned) {
+  model_.findCandidates(map_, measurements, driven_m, problem_);
+  std::vector<std::vector<AssociationOdds>> odds;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    odds.emplace_back();
+    const HypothesisLandmark* own = assigned[i] == kNoLandmark ? nullptr : findLandmark(assigned[i], map_.landmarks);
+    bool is_gated = false;
+    for (const Candidate& candidate : problem_.gated[i]) {
+      const bool is_own = own == &map_.landmarks[static_cast<std::size_t>(candidate.landmark)];
+      odds.back().push_back(oddsOf(measurements[i], candidate, is_own));
+      if (is_own) odds.back().back().sole += oddsFarOff(measurements[i], *own);
+      is_gated = is_gated || is_own;
+    }
+    if (own == nullptr || is_gated) continue;
+    odds.back().push_back({static_cast<int>(own - map_.landmarks.data()), oddsFarOff(measurements[i], *own), 0.0});
+  }
+  const auto marginals = associationMarginals(odds, static_cast<int>(map_.landmarks.size()));
+  std::vector<JudgedAssociation> result;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    JudgedAssociation judged{0.0, 1.0};
+    for (std::size_t c = 0; c < odds[i].size(); ++c) {
+      const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(odds[i][c].landmark)];
+      const bool is_own = landmark->id == assigned[i];
+      const double exists = logistic(landmark.existence.log_odds);
+      const bool is_given = is_own && !isOnlySighting(landmark);
+      if (is_own) judged.own_prob = is_given ? marginals[i][c] : std::min(1.0, marginals[i][c] / exists);
+      judged.nothing_prob -= marginals[i][c] * (is_given ? exists : 1.0);
+    }
+    judged.nothing_prob = std::clamp(judged.nothing_prob, 0.0, 1.0);
+    result.push_back(judged);
+  }
+  return result;
+}
+
+}  // namespace semantic_mht_slam
