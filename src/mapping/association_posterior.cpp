@@ -96,9 +96,9 @@ AssociationOdds AssociationPosterior::oddsOf(const Measurement& measurement, con
   AssociationOdds result{candidate.landmark, 0.0, 0.0};
   if (is_own && isOnlySighting(landmark)) {
     result.sole = std::exp(landmark.existence.log_odds);
-  } else {
-    result.sole = exists * detected / (1.0 - exists * detected) * odds(candidate.log_likelihood);
+    return result;
   }
+  result.sole = exists * detected / (1.0 - exists * detected) * odds(candidate.log_likelihood);
   result.part = exists * detected * config_.association.split_prob * odds(candidate.log_part_likelihood);
   return result;
 }
@@ -124,7 +124,7 @@ std::vector<JudgedAssociation> AssociationPosterior::judge(const std::vector<Mea
     for (const Candidate& candidate : problem_.gated[i]) {
       const bool is_own = own == &map_.landmarks[static_cast<std::size_t>(candidate.landmark)];
       odds.back().push_back(oddsOf(measurements[i], candidate, is_own));
-      if (is_own) odds.back().back().sole += oddsFarOff(measurements[i], *own);
+      if (is_own && !isOnlySighting(*own)) odds.back().back().sole += oddsFarOff(measurements[i], *own);
       is_gated = is_gated || is_own;
     }
     if (own == nullptr || is_gated) continue;

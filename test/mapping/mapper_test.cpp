@@ -87,7 +87,8 @@ MapperRun runMapper(const MapperConfig& config, const std::vector<Seen>& frames,
 std::map<std::pair<std::size_t, int>, LandmarkId> idsOf(const MapperRun& run) {
   std::map<std::pair<std::size_t, int>, LandmarkId> ids;
   for (const Submap& submap : run.submaps) {
-    for (const auto& [frame, row, landmark] : submap.associations) ids[{frame, row}] = landmark;
+    for (const auto& association : submap.associations)
+      ids[{association.frame, association.row}] = association.landmark;
   }
   return ids;
 }

@@ -61,7 +61,7 @@ class OrchardDrive {
   /// Which trees the detections of each landmark show, more than once.
   std::map<LandmarkId, std::set<int>> treesOfLandmarks(const Slam& slam) const {
     std::map<LandmarkId, std::map<int, int>> shown;
-    for (const auto& [frame, row, landmark] : slam.map().associations()) {
+    for (const auto& [frame, row, landmark, probability] : slam.map().associations()) {
       const int tree = tree_of_row_.at(frame)[static_cast<std::size_t>(row)];
       if (landmark != kNoLandmark) ++shown[landmark][tree];
     }
