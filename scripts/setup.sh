@@ -18,7 +18,7 @@ PACKAGES=(
   libdiagnostic-msgs-dev libdiagnostic-updater-dev python3-diagnostic-msgs libstd-srvs-dev libroslib-dev
   libdynamic-reconfigure-config-init-mutex-dev python3-dynamic-reconfigure
   libeigen3-dev libceres-dev libyaml-cpp-dev nlohmann-json3-dev libboost-program-options-dev
-  libpcl-dev libopencv-dev libflann-dev liblz4-dev
+  libpcl-dev libopencv-dev libflann-dev liblz4-dev libgeographiclib-dev pkg-config
   rviz librviz-dev qtbase5-dev libgl1-mesa-dri xvfb xauth xdotool imagemagick
   libgtest-dev libbenchmark-dev
 )

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <GeographicLib/LocalCartesian.hpp>
 #include <nlohmann/json.hpp>
 
 #include "semantic_mht_slam/common/error.h"
@@ -12,31 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSemiMajor_m = 6378137.0;  // WGS 84
-constexpr double kFlattening = 1.0 / 298.257223563;
-constexpr double kEccentricitySq = kFlattening * (2.0 - kFlattening);
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kMostLatitude_deg = 89.9;  // closer to a pole there is no east worth the name
-
-/// Axes east, north and up at a place, in the axes of the Earth, as columns.
-Eigen::Matrix3d eastNorthUp(double latitude_rad, double longitude_rad) {
-  const double sin_lat = std::sin(latitude_rad);
-  const double cos_lat = std::cos(latitude_rad);
-  const double sin_lon = std::sin(longitude_rad);
-  const double cos_lon = std::cos(longitude_rad);
-  Eigen::Matrix3d axes;
-  axes << -sin_lon, -sin_lat * cos_lon, cos_lat * cos_lon,  //
-      cos_lon, -sin_lat * sin_lon, cos_lat * sin_lon,       //
-      0.0, cos_lat, sin_lat;
-  return axes;
-}
-
-Eigen::Vector3d onEllipsoid(double latitude_rad, double longitude_rad) {
-  const double sin_lat = std::sin(latitude_rad);
-  const double radius_m = kSemiMajor_m / std::sqrt(1.0 - kEccentricitySq * sin_lat * sin_lat);
-  return {radius_m * std::cos(latitude_rad) * std::cos(longitude_rad),
-          radius_m * std::cos(latitude_rad) * std::sin(longitude_rad), radius_m * (1.0 - kEccentricitySq) * sin_lat};
-}
 
 std::vector<double> asList(const Eigen::Vector3d& vector, int decimals) {
   std::vector<double> list;
@@ -77,20 +54,12 @@ void requireUsable(const MapOrigin& origin) {
 }
 
 Eigen::Vector2d toLatitudeLongitude(const MapOrigin& origin, const Eigen::Vector3d& position_m) {
-  const double latitude_rad = kDegree * origin.latitude_deg;
-  const double longitude_rad = kDegree * origin.longitude_deg;
   const Eigen::Vector3d east_north_up = Eigen::AngleAxisd(origin.heading_rad, Eigen::Vector3d::UnitZ()) * position_m;
-  const Eigen::Vector3d at =
-      onEllipsoid(latitude_rad, longitude_rad) + eastNorthUp(latitude_rad, longitude_rad) * east_north_up;
-  // Bowring, Transformation from spatial to geographical coordinates, Survey Review 1976: exact to micrometres near the
-  // ground.
-  const double semi_minor_m = kSemiMajor_m * (1.0 - kFlattening);
-  const double planar_m = at.head<2>().norm();
-  const double parametric = std::atan2(kSemiMajor_m * at.z(), semi_minor_m * planar_m);
-  const double second_eccentricity_sq = kEccentricitySq / (1.0 - kEccentricitySq);
-  const double latitude = std::atan2(at.z() + second_eccentricity_sq * semi_minor_m * std::pow(std::sin(parametric), 3),
-                                     planar_m - kEccentricitySq * kSemiMajor_m * std::pow(std::cos(parametric), 3));
-  return Eigen::Vector2d(latitude, std::atan2(at.y(), at.x())) / kDegree;
+  Eigen::Vector2d place_deg;
+  double height_m = 0.0;
+  GeographicLib::LocalCartesian(origin.latitude_deg, origin.longitude_deg)
+      .Reverse(east_north_up.x(), east_north_up.y(), east_north_up.z(), place_deg.x(), place_deg.y(), height_m);
+  return place_deg;
 }
 
 std::string landmarksCsv(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes) {
