@@ -12,7 +12,7 @@ namespace {
 
 /// Which blocks each block is in a clique with, itself left out, rising.
 std::vector<std::vector<int>> neighboursOf(int size, const std::vector<std::vector<int>>& cliques) {
-  std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(size));
+  std::vector<std::vector<int>> neighbours(size);
   const auto tidy = [](std::vector<int>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -20,11 +20,11 @@ std::vector<std::vector<int>> neighboursOf(int size, const std::vector<std::vect
   std::vector<std::size_t> tidied(neighbours.size(), 64);
   for (const std::vector<int>& clique : cliques) {
     for (const int a : clique) {
-      std::vector<int>& list = neighbours[static_cast<std::size_t>(a)];
+      std::vector<int>& list = neighbours[a];
       for (const int b : clique) {
         if (a != b) list.push_back(b);
       }
-      std::size_t& limit = tidied[static_cast<std::size_t>(a)];
+      std::size_t& limit = tidied[a];
       if (list.size() < limit) continue;
       tidy(list);
       limit = 2 * std::max(list.size(), limit / 2);
@@ -41,31 +41,31 @@ std::vector<int> eliminationOrder(const std::vector<std::vector<int>>& neighbour
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < size; ++i) {
     entries.emplace_back(i, i, 1.0);
-    for (const int other : neighbours[static_cast<std::size_t>(i)]) entries.emplace_back(i, other, 1.0);
+    for (const int other : neighbours[i]) entries.emplace_back(i, other, 1.0);
   }
   Eigen::SparseMatrix<double> pattern(size, size);
   pattern.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   Eigen::AMDOrdering<int>()(pattern, order);
   std::vector<int> position(neighbours.size());
-  for (int place = 0; place < size; ++place) position[static_cast<std::size_t>(order.indices()[place])] = place;
+  for (int place = 0; place < size; ++place) position[order.indices()[place]] = place;
   return position;
 }
 
 }  // namespace
 
 std::size_t BlockCholesky::Column::find(int row) const {
-  return static_cast<std::size_t>(std::lower_bound(rows.begin(), rows.end(), row) - rows.begin());
+  return std::lower_bound(rows.begin(), rows.end(), row) - rows.begin();
 }
 
 BlockCholesky::BlockCholesky(int size, const std::vector<std::vector<int>>& cliques)
-    : columns_(static_cast<std::size_t>(size)) {
+    : columns_(size) {
   const std::vector<std::vector<int>> neighbours = neighboursOf(size, cliques);
   position_ = eliminationOrder(neighbours);
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    std::vector<int>& rows = columns_[static_cast<std::size_t>(position_[i])].rows;
+    std::vector<int>& rows = columns_[position_[i]].rows;
     for (const int other : neighbours[i]) {
-      const int row = position_[static_cast<std::size_t>(other)];
+      const int row = position_[other];
       if (row > position_[i]) rows.push_back(row);
     }
     std::sort(rows.begin(), rows.end());
@@ -74,7 +74,7 @@ BlockCholesky::BlockCholesky(int size, const std::vector<std::vector<int>>& cliq
   for (Column& column : columns_) {
     column.blocks.assign(column.rows.size(), Matrix6d::Zero());
     if (column.rows.empty()) continue;
-    std::vector<int>& rows = columns_[static_cast<std::size_t>(column.rows.front())].rows;
+    std::vector<int>& rows = columns_[column.rows.front()].rows;
     std::vector<int> joined;
     std::set_union(rows.begin(), rows.end(), column.rows.begin() + 1, column.rows.end(), std::back_inserter(joined));
     rows = std::move(joined);
@@ -82,9 +82,9 @@ BlockCholesky::BlockCholesky(int size, const std::vector<std::vector<int>>& cliq
 }
 
 void BlockCholesky::add(int row, int column, const Matrix6d& block) {
-  const int r = position_[static_cast<std::size_t>(row)];
-  const int c = position_[static_cast<std::size_t>(column)];
-  Column& place = columns_[static_cast<std::size_t>(std::min(r, c))];
+  const int r = position_[row];
+  const int c = position_[column];
+  Column& place = columns_[std::min(r, c)];
   if (r == c) {
     place.diagonal += block;
   } else if (r > c) {
@@ -102,7 +102,7 @@ bool BlockCholesky::factorize() {
     if (!column.diagonal.allFinite()) return false;
     for (Matrix6d& block : column.blocks) block = (block * column.diagonal.transpose()).eval();
     for (std::size_t a = 0; a < column.rows.size(); ++a) {
-      Column& later = columns_[static_cast<std::size_t>(column.rows[a])];
+      Column& later = columns_[column.rows[a]];
       const Matrix6d across = column.blocks[a].transpose();
       later.diagonal.noalias() -= column.blocks[a] * across;
       std::size_t place = 0;
@@ -118,11 +118,11 @@ bool BlockCholesky::factorize() {
 Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
   Eigen::MatrixXd x(right.rows(), right.cols());
   for (std::size_t i = 0; i < position_.size(); ++i) {
-    x.middleRows<6>(6 * position_[i]) = right.middleRows<6>(6 * static_cast<Eigen::Index>(i));
+    x.middleRows<6>(6 * position_[i]) = right.middleRows<6>(6 * i);
   }
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     const Column& column = columns_[j];
-    auto own = x.middleRows<6>(6 * static_cast<Eigen::Index>(j));
+    auto own = x.middleRows<6>(6 * j);
     own = (column.diagonal * own).eval();
     for (std::size_t a = 0; a < column.rows.size(); ++a) {
       x.middleRows<6>(6 * column.rows[a]).noalias() -= column.blocks[a] * own;
@@ -130,7 +130,7 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
   }
   for (std::size_t j = columns_.size(); j-- > 0;) {
     const Column& column = columns_[j];
-    auto own = x.middleRows<6>(6 * static_cast<Eigen::Index>(j));
+    auto own = x.middleRows<6>(6 * j);
     for (std::size_t a = 0; a < column.rows.size(); ++a) {
       own.noalias() -= column.blocks[a].transpose() * x.middleRows<6>(6 * column.rows[a]);
     }
@@ -138,7 +138,7 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
   }
   Eigen::MatrixXd result(right.rows(), right.cols());
   for (std::size_t i = 0; i < position_.size(); ++i) {
-    result.middleRows<6>(6 * static_cast<Eigen::Index>(i)) = x.middleRows<6>(6 * position_[i]);
+    result.middleRows<6>(6 * i) = x.middleRows<6>(6 * position_[i]);
   }
   return result;
 }
@@ -153,7 +153,7 @@ void BlockCholesky::invert() {
     sums.assign(count, Matrix6d::Zero());
     for (std::size_t a = 0; a < count; ++a) steps[a].noalias() = column.blocks[a] * column.diagonal;
     for (std::size_t a = 0; a < count; ++a) {
-      const Column& later = columns_[static_cast<std::size_t>(column.rows[a])];
+      const Column& later = columns_[column.rows[a]];
       sums[a].noalias() += later.diagonal * steps[a];
       std::size_t place = 0;
       for (std::size_t b = a + 1; b < count; ++b) {
@@ -171,9 +171,9 @@ void BlockCholesky::invert() {
 }
 
 Matrix6d BlockCholesky::inverse(int row, int column) const {
-  const int r = position_[static_cast<std::size_t>(row)];
-  const int c = position_[static_cast<std::size_t>(column)];
-  const Column& place = columns_[static_cast<std::size_t>(std::min(r, c))];
+  const int r = position_[row];
+  const int c = position_[column];
+  const Column& place = columns_[std::min(r, c)];
   if (r == c) return place.diagonal;
   if (r > c) return place.blocks[place.find(r)];
   return place.blocks[place.find(c)].transpose();

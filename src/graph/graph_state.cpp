@@ -78,7 +78,7 @@ void GraphState::addPrior(int node, const Pose& T_world_node, const PoseCov& cov
 }
 
 PoseNode GraphState::node(int index) const {
-  const NodeState& state = nodes.at(static_cast<std::size_t>(index));
+  const NodeState& state = nodes.at(index);
   PoseNode node;
   node.T_previous_node = state.pose();
   node.shared_errors = state.shared_errors;

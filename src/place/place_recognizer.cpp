@@ -99,7 +99,7 @@ std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t
     ranked.emplace_back(-descriptorSimilarity(query.descriptor, places_[i].descriptor), i);
   }
   const std::size_t count = std::min<std::size_t>(ranked.size(), config_.max_candidates);
-  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
+  std::partial_sort(ranked.begin(), ranked.begin() + count, ranked.end());
   ranked.resize(count);
   std::vector<PlaceMatch> matches;
   for (const auto& [negative_score, i] : ranked) {

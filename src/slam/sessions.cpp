@@ -35,7 +35,7 @@ const MapFix* Sessions::latestFix() const {
 }
 
 std::vector<StampedPose> Sessions::odometryAfter(Stamp stamp) const {
-  const auto begin = odometry_.begin() + static_cast<std::ptrdiff_t>(sessions_.back().first_odometry);
+  const auto begin = odometry_.begin() + sessions_.back().first_odometry;
   const auto first = std::upper_bound(begin, odometry_.end(), stamp,
                                       [](Stamp earlier, const StampedPose& pose) { return earlier < pose.stamp; });
   return {first, odometry_.end()};

@@ -45,7 +45,7 @@ struct Stretch {
 std::vector<Stretch> stretchesOf(const TrajectoryRecord& record) {
   std::vector<Stretch> stretches;
   for (std::size_t s = 0; s < record.sessions.size(); ++s) {
-    const auto at = [&](std::size_t i) { return record.odometry.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto at = [&](std::size_t i) { return record.odometry.begin() + i; };
     const bool is_last = s + 1 == record.sessions.size();
     const Samples begin = at(record.sessions[s].first_odometry);
     const Samples end = is_last ? record.odometry.end() : at(record.sessions[s + 1].first_odometry);
@@ -56,7 +56,7 @@ std::vector<Stretch> stretchesOf(const TrajectoryRecord& record) {
 
 std::vector<Pose> posesOf(const Stretch& stretch) {
   std::vector<Pose> poses;
-  poses.reserve(static_cast<std::size_t>(stretch.end - stretch.begin));
+  poses.reserve(stretch.end - stretch.begin);
   for (Samples sample = stretch.begin; sample != stretch.end; ++sample) poses.push_back(sample->T_world_base);
   std::vector<CorrectionAnchor> anchors;
   for (const AnchoredFix& fix : stretch.anchors) anchors.push_back(fix.anchor);
@@ -120,7 +120,7 @@ std::vector<StampedPose> trajectoryOf(const TrajectoryRecord& record) {
   for (const Stretch& stretch : stretchesOf(record)) {
     const std::vector<Pose> poses = posesOf(stretch);
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      trajectory.push_back({stretch.begin[static_cast<std::ptrdiff_t>(i)].stamp, poses[i]});
+      trajectory.push_back({stretch.begin[i].stamp, poses[i]});
     }
   }
   return trajectory;
