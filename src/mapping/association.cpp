@@ -95,13 +95,13 @@ double AssociationModel::logCountPrior(int observations) const {
   throw std::logic_error("unknown count prior");
 }
 
-bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
+bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Matrix3d& outlier_cov_m2,
                                        const Eigen::Vector3d& d, Candidate& candidate) const {
   const bool has_outliers = config_.association.outlier_prob > 0.0;
   std::optional<GaussianEvaluation> wide;
   if (has_outliers || config_.association.split_prob > 0.0) {
     Eigen::Matrix3d wide_cov = cov;
-    wide_cov.diagonal() += outlier_variance_m2;
+    wide_cov += outlier_cov_m2;
     wide = evaluate({Eigen::Vector3d::Zero(), wide_cov}, d);
     if (!wide || (has_outliers && wide->mahalanobis_sq > gate_mahalanobis_sq_)) return false;
     candidate.log_part_likelihood = wide->log_density;
@@ -118,10 +118,10 @@ bool AssociationModel::evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::
 }
 
 /// By one axis alone, which no Mahalanobis distance is smaller than; most landmarks go without a factorization.
-bool AssociationModel::isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
+bool AssociationModel::isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eigen::Matrix3d& outlier_cov_m2,
                                            const Eigen::Vector3d& d) const {
   Eigen::Array3d variance_m2 = cov.diagonal();
-  if (config_.association.outlier_prob > 0.0) variance_m2 += outlier_variance_m2.array();
+  if (config_.association.outlier_prob > 0.0) variance_m2 += outlier_cov_m2.diagonal().array();
   return (d.array().square() > gate_mahalanobis_sq_ * variance_m2).any();
 }
 
@@ -170,9 +170,9 @@ void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const 
     if (landmark.is_from_earlier_submap) {
       cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(object_class)];
     }
-    if (isSurelyOutsideGate(cov, own.outlier_variance_m2, d)) continue;
+    if (isSurelyOutsideGate(cov, own.outlier_cov_m2, d)) continue;
     Candidate candidate;
-    if (!evaluateMixture(cov, own.outlier_variance_m2, d, candidate)) continue;
+    if (!evaluateMixture(cov, own.outlier_cov_m2, d, candidate)) continue;
     const double log_class = logClassLikelihood(detected.class_index, landmark.class_probs);
     if (!std::isfinite(log_class)) continue;
     candidate.landmark = j;

@@ -29,15 +29,19 @@ Eigen::Vector3d varianceChange(const Measurement& measurement, const ClassNoise&
 
 }  // namespace
 
+Eigen::Matrix3d rayAxes(const Measurement& measurement) {
+  return measurement.R_submap_base.toRotationMatrix() * planarAxes(measurement.ray_m);
+}
+
 ObjectNoise noiseOfObject(const Measurement& measurement, ClassIndex object_class) {
   if (isOwnNoise(measurement, object_class)) {
-    return {measurement.cov_m2, measurement.outlier_variance_m2, measurement.wander_variance_per_m};
+    return {measurement.cov_m2, measurement.outlier_cov_m2, measurement.wander_variance_per_m};
   }
   const ClassNoise& object = measurement.noise_of_class->at(static_cast<std::size_t>(object_class));
-  const Eigen::Matrix3d axes = measurement.R_submap_base.toRotationMatrix() * planarAxes(measurement.ray_m);
+  const Eigen::Matrix3d axes = rayAxes(measurement);
   const Eigen::Vector3d change_m2 = varianceChange(measurement, object);
   return {measurement.cov_m2 + axes * change_m2.asDiagonal() * axes.transpose(),
-          Eigen::Vector3d::Constant(object.outlier_variance_m2), object.wander_variance_per_m};
+          axes * object.outlier_variance_m2.asDiagonal() * axes.transpose(), object.wander_variance_per_m};
 }
 
 const Measurement& ofObject(const Measurement& measurement, ClassIndex object_class, Measurement& changed) {
@@ -49,7 +53,7 @@ const Measurement& ofObject(const Measurement& measurement, ClassIndex object_cl
   changed.noise_stddev_m = (measurement.noise_stddev_m.cwiseAbs2() + varianceChange(measurement, object))
                                .cwiseMax(kLeastStddev_m * kLeastStddev_m)
                                .cwiseSqrt();
-  changed.outlier_variance_m2 = noise.outlier_variance_m2;
+  changed.outlier_cov_m2 = noise.outlier_cov_m2;
   changed.wander_variance_per_m = noise.wander_variance_per_m;
   return changed;
 }

@@ -44,6 +44,10 @@ void describe(CalibrationConfig& config, Fields& fields) {
   fields.add("max_distance", config.max_distance_m, "m", {0.1, 100.0},
              "Neighbours further apart are not compared, unless the class is so noisy that many would be missed.");
   fields.add("min_stddev", config.min_stddev_m, "m", {1e-3, 10.0}, "Noise is never taken to be below this.");
+  fields.add(
+      "min_share", config.min_share, "", {0.0, 1.0},
+      "Share of the detections that must have a neighbour in the frame before; a detector that shows objects less "
+      "often keeps the class table's noise.");
 }
 
 void RunningMedian::add(double value, int count) {
@@ -94,9 +98,9 @@ void DetectorCalibration::add(const Pose& T_odom_base, const Detections& detecti
     now.positions_m.push_back(detection.position_m);
     now.classes.push_back(detection.class_index);
   }
-  if (!past_.empty()) compare(past_.back(), now, false);
+  if (!past_.empty()) learnNoise(past_.back(), now);
   if (static_cast<int>(past_.size()) == config_.lag_frames) {
-    compare(past_.front(), now, true);
+    learnWander(past_.front(), now);
     past_.pop_front();
   }
   past_.push_back(std::move(now));
@@ -114,13 +118,13 @@ std::vector<double> DetectorCalibration::reaches() const {
   return reaches_m;
 }
 
-void DetectorCalibration::compare(const PastFrame& past, const PastFrame& now, bool is_lagged) {
+std::vector<DetectorCalibration::Neighbours> DetectorCalibration::neighbours(const PastFrame& past,
+                                                                             const PastFrame& now) const {
   const Pose T_now_past = now.T_odom_base.inverse() * past.T_odom_base;
-  const double driven_m = T_now_past.translation_m.norm();
-  if (is_lagged && driven_m < 1.0) return;  // at a stop nothing wanders
   std::vector<Eigen::Vector3d> expected_m;
   for (const Eigen::Vector3d& position_m : past.positions_m) expected_m.push_back(T_now_past * position_m);
   const std::vector<double> reaches_m = reaches();
+  std::vector<Neighbours> result;
   for (std::size_t i = 0; i < now.positions_m.size(); ++i) {
     const Eigen::Vector3d& position_m = now.positions_m[i];
     const double reach_m = reaches_m[static_cast<std::size_t>(now.classes[i])];
@@ -128,21 +132,35 @@ void DetectorCalibration::compare(const PastFrame& past, const PastFrame& now, b
     if (j < 0) continue;
     const auto k = static_cast<std::size_t>(j);
     const int back = nearest(expected_m[k], now.classes[i], now.positions_m, now.classes, reach_m);
-    if (back != static_cast<int>(i)) continue;
-    const Eigen::Vector3d residual_m = position_m - expected_m[k];
-    ClassStatistics& statistics = statistics_[static_cast<std::size_t>(now.classes[i])];
-    if (is_lagged) {
-      statistics.wander.add(residual_m.head<2>().norm());
-      statistics.wander_distance_m.add(driven_m);
-      continue;
-    }
+    if (back == static_cast<int>(i)) result.push_back({now.classes[i], position_m, position_m - expected_m[k]});
+  }
+  return result;
+}
+
+void DetectorCalibration::learnNoise(const PastFrame& past, const PastFrame& now) {
+  const std::vector<Neighbours> pairs = neighbours(past, now);
+  detections_ += now.classes.size();
+  neighbours_ += pairs.size();
+  if (static_cast<double>(neighbours_) < config_.min_share * static_cast<double>(detections_)) return;
+  for (const auto& [class_index, position_m, residual_m] : pairs) {
     const double range_m = position_m.head<2>().norm();
     if (range_m < 1e-3) continue;
     const Eigen::Vector2d ray = position_m.head<2>() / range_m;
-    auto& directions = statistics.noise[static_cast<std::size_t>(rangeBin(range_m))];
+    auto& directions =
+        statistics_[static_cast<std::size_t>(class_index)].noise[static_cast<std::size_t>(rangeBin(range_m))];
     directions[0].add(std::abs(residual_m.head<2>().dot(ray)));
     directions[1].add(std::abs(residual_m.y() * ray.x() - residual_m.x() * ray.y()));
     directions[2].add(std::abs(residual_m.z()));
+  }
+}
+
+void DetectorCalibration::learnWander(const PastFrame& past, const PastFrame& now) {
+  const double driven_m = (now.T_odom_base.inverse() * past.T_odom_base).translation_m.norm();
+  if (driven_m < 1.0) return;  // at a stop nothing wanders
+  for (const auto& [class_index, position_m, residual_m] : neighbours(past, now)) {
+    ClassStatistics& statistics = statistics_[static_cast<std::size_t>(class_index)];
+    statistics.wander.add(residual_m.head<2>().norm());
+    statistics.wander_distance_m.add(driven_m);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -12,6 +13,9 @@ namespace {
 
 /// Places in the list of frames at which each landmark was seen, rising.
 using Sightings = std::map<LandmarkId, std::vector<int>>;
+
+constexpr std::size_t kNeighbours = 8;  // that tell how densely landmarks stand
+constexpr double kBoxVariance = 0.25;   // between two boxes of one object, in variances of the detector
 
 Sightings collectSightings(const std::vector<FusedAssociations>& associations) {
   Sightings sightings;
@@ -25,14 +29,17 @@ Sightings collectSightings(const std::vector<FusedAssociations>& associations) {
   return sightings;
 }
 
+/// Probability that an object is seen in a frame between its first and its last.
+double seenProb(const std::vector<int>& frames) {
+  return (static_cast<double>(frames.size()) + 1.0) / (frames.back() - frames.front() + 1 + 2.0);
+}
+
 /// Evidence that `rare` is a second name of `common`, log odds: binomial likelihoods of being seen together.
 double logOddsOfOneObject(const DuplicateConfig& config, const std::vector<int>& rare, const std::vector<int>& common) {
-  const int first = common.front();
-  const int last = common.back();
-  const double seen_prob = (static_cast<double>(common.size()) + 1.0) / (last - first + 1 + 2.0);
+  const double seen_prob = seenProb(common);
   double log_odds = config.log_prior_odds;
   for (const int frame : rare) {
-    if (frame < first || frame > last) continue;
+    if (frame < common.front() || frame > common.back()) continue;
     const bool is_together = std::binary_search(common.begin(), common.end(), frame);
     log_odds +=
         is_together ? std::log(config.split_prob / seen_prob) : std::log((1.0 - config.split_prob) / (1.0 - seen_prob));
@@ -40,12 +47,46 @@ double logOddsOfOneObject(const DuplicateConfig& config, const std::vector<int>&
   return log_odds;
 }
 
-bool standTogether(const DuplicateConfig& config, const MixtureLandmark& a, const MixtureLandmark& b,
-                   const Eigen::Matrix3d& detector_cov) {
-  if (a.mostLikelyClass() != b.mostLikelyClass()) return false;
-  const Eigen::Vector3d d = a.position.mean_m - b.position.mean_m;
-  const Eigen::Matrix3d cov = a.position.cov_m2 + b.position.cov_m2 + detector_cov;
-  return d.dot(cov.llt().solve(d)) < config.gate_mahalanobis_sq;
+/// Landmarks a square metre around one of them, by the distance to its k-th neighbour (Loftsgaarden and Quesenberry,
+/// A nonparametric estimate of a multivariate density function, 1965).
+double densityAround(const MixtureLandmark& landmark, const std::vector<MixtureLandmark>& landmarks) {
+  std::vector<double> distances_sq;
+  for (const MixtureLandmark& other : landmarks) {
+    distances_sq.push_back((other.position.mean_m - landmark.position.mean_m).head<2>().squaredNorm());
+  }
+  const std::size_t k = std::min(kNeighbours, distances_sq.size() - 1);
+  std::nth_element(distances_sq.begin(), distances_sq.begin() + static_cast<std::ptrdiff_t>(k), distances_sq.end());
+  return std::max(1.0, static_cast<double>(k) - 1.0) / (M_PI * distances_sq[k]);
+}
+
+/// Evidence that `rare` is a second box, of another class, that the detector draws around `common`, log odds: the box
+/// stands nearer to it than another object would by chance, and hardly any frame shows it alone.
+double logOddsOfSecondBox(double box_prob, const Eigen::Vector3d& d, const Eigen::Matrix3d& cov_m2,
+                          double density_per_m2, const std::vector<int>& rare, const std::vector<int>& common) {
+  const Eigen::Matrix2d planar_m2 = cov_m2.topLeftCorner<2, 2>();
+  double log_odds = std::log(box_prob) - 0.5 * d.head<2>().dot(planar_m2.llt().solve(d.head<2>())) -
+                    std::log(2.0 * M_PI) - 0.5 * std::log(planar_m2.determinant()) - std::log(density_per_m2);
+  const double seen_prob = seenProb(common);
+  for (const int frame : rare) {
+    const bool is_together = std::binary_search(common.begin(), common.end(), frame);
+    log_odds += is_together ? std::log((1.0 - box_prob) / seen_prob) : std::log(box_prob / (1.0 - seen_prob));
+  }
+  return log_odds;
+}
+
+/// Evidence that `rare` is `common` once more, log odds; none where they do not stand together.
+std::optional<double> logOddsOfSame(const DuplicateConfig& config, double box_prob, const MixtureLandmark& rare,
+                                    const MixtureLandmark& common, const Eigen::Matrix3d& detector_cov_m2,
+                                    const Sightings& sightings, const std::vector<MixtureLandmark>& landmarks) {
+  const bool is_of_class = rare.mostLikelyClass() == common.mostLikelyClass();
+  const Eigen::Vector3d d = rare.position.mean_m - common.position.mean_m;
+  const Eigen::Matrix3d cov_m2 =
+      rare.position.cov_m2 + common.position.cov_m2 + (is_of_class ? 1.0 : kBoxVariance) * detector_cov_m2;
+  if (d.dot(cov_m2.llt().solve(d)) >= config.gate_mahalanobis_sq) return std::nullopt;
+  const std::vector<int>& in_rare = sightings.at(rare.id);
+  const std::vector<int>& in_common = sightings.at(common.id);
+  if (is_of_class) return logOddsOfOneObject(config, in_rare, in_common);
+  return logOddsOfSecondBox(box_prob, d, cov_m2, densityAround(common, landmarks), in_rare, in_common);
 }
 
 /// Product of the two Gaussians and of the class probabilities.
@@ -76,7 +117,7 @@ void describe(DuplicateConfig& config, Fields& fields) {
              "Prior log odds that two landmarks of a class inside the gate are one object.");
 }
 
-std::vector<SameLandmark> mergeDuplicates(const DuplicateConfig& config,
+std::vector<SameLandmark> mergeDuplicates(const DuplicateConfig& config, double box_prob,
                                           const std::vector<FusedAssociations>& associations, const SideBySide& seen,
                                           const std::function<Eigen::Matrix3d(ClassIndex)>& detectorCov,
                                           std::vector<MixtureLandmark>& landmarks) {
@@ -99,11 +140,9 @@ std::vector<SameLandmark> mergeDuplicates(const DuplicateConfig& config,
     std::size_t survivor = landmarks.size();
     for (std::size_t c = r + 1; c < order.size(); ++c) {
       const MixtureLandmark& common = landmarks[order[c]];
-      if (!standTogether(config, rare, common, detector_cov)) continue;
-      if (seen.excludes(names[order[r]], names[order[c]])) continue;
-      const double log_odds = logOddsOfOneObject(config, sightings.at(rare.id), sightings.at(common.id));
-      if (log_odds <= best) continue;
-      best = log_odds;
+      const auto log_odds = logOddsOfSame(config, box_prob, rare, common, detector_cov, sightings, landmarks);
+      if (!log_odds || *log_odds <= best || seen.excludes(names[order[r]], names[order[c]])) continue;
+      best = *log_odds;
       survivor = order[c];
     }
     if (survivor == landmarks.size()) continue;

@@ -20,6 +20,7 @@ Measurement inSubmap(Measurement measurement, const Pose& T_submap_base, const P
   const Eigen::Vector3d lever_m = R * measurement.position_m;
   measurement.position_m = lever_m + T_submap_base.translation_m;
   measurement.cov_m2 = R * measurement.cov_m2 * R.transpose();
+  measurement.outlier_cov_m2 = R * measurement.outlier_cov_m2 * R.transpose();
   measurement.R_submap_base = T_submap_base.rotation;
   if (offset == nullptr) return measurement;
   measurement.pose_cov_m2 = pointCov(*offset, lever_m);

@@ -24,11 +24,15 @@ std::optional<FilterUpdate> LandmarkTracking::filtered(const Gaussian3& predicte
   const double range_m = measurement.ray_m.norm();
   if (config_.measurement_model == MeasurementModel::kAdditive || range_m < kMinRange_m) {
     PositionMeasurement position{measurement.position_m, measurement.cov_m2};
-    if (is_outlier) position.cov_m2.diagonal() += measurement.outlier_variance_m2;
+    if (is_outlier) position.cov_m2 += measurement.outlier_cov_m2;
     return unscentedUpdate(predicted, position);
   }
-  const Eigen::Vector3d outlier_m2 = is_outlier ? measurement.outlier_variance_m2 : Eigen::Vector3d::Zero();
-  const Eigen::Vector3d stddev_m = (measurement.noise_stddev_m.cwiseAbs2() + outlier_m2).cwiseSqrt();
+  Eigen::Vector3d variance_m2 = measurement.noise_stddev_m.cwiseAbs2();
+  if (is_outlier) {
+    const Eigen::Matrix3d axes = rayAxes(measurement);
+    variance_m2 += (axes.transpose() * measurement.outlier_cov_m2 * axes).diagonal();
+  }
+  const Eigen::Vector3d stddev_m = variance_m2.cwiseSqrt();
   RangeBearingMeasurement polar;
   // The pose that makes the ray end where the measurement is, whatever corrected it.
   polar.T_landmarks_sensor.rotation = measurement.R_submap_base;

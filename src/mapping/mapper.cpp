@@ -90,10 +90,8 @@ Measurement Mapper::makeMeasurement(const Detection& detection) {
   measurement.ray_m = measurement.position_m;
   measurement.noise_stddev_m = alongRay(measurement.cov_m2, measurement.ray_m);
   const AssociationConfig& association = config_.association;
-  const double stddev_m =
-      std::max<double>(association.outlier_min_stddev_m,
-                       association.outlier_factor * std::sqrt(measurement.cov_m2.diagonal().maxCoeff()));
-  measurement.outlier_variance_m2 = Eigen::Vector3d::Constant(stddev_m * stddev_m);
+  measurement.outlier_cov_m2 = association.outlier_factor * association.outlier_factor * measurement.cov_m2;
+  measurement.outlier_cov_m2.diagonal().array() += std::pow(association.outlier_min_stddev_m, 2);
   measurement.wander_variance_per_m = calibration_.wanderVariancePerMetre(detection.class_index);
   measurement.class_index = detection.class_index;
   measurement.row = detection.row;
@@ -110,9 +108,9 @@ std::shared_ptr<const std::vector<ClassNoise>> Mapper::noiseOfClasses(double ran
   auto noise = std::make_shared<std::vector<ClassNoise>>();
   for (ClassIndex i = 0; i < classes_.size(); ++i) {
     const Eigen::Vector3d stddev_m = calibration_.noiseStddev(i, range_m);
-    const double outlier_m =
-        std::max<double>(association.outlier_min_stddev_m, association.outlier_factor * stddev_m.maxCoeff());
-    noise->push_back({stddev_m, outlier_m * outlier_m, calibration_.wanderVariancePerMetre(i)});
+    const Eigen::Array3d outlier_m2 =
+        (association.outlier_factor * stddev_m).array().square() + std::pow(association.outlier_min_stddev_m, 2);
+    noise->push_back({stddev_m, outlier_m2, calibration_.wanderVariancePerMetre(i)});
   }
   known = noise;
   return known;
@@ -205,7 +203,8 @@ FinishedSubmap Mapper::finish() {
     const double horizontal_m = std::max(stddev_m[0], stddev_m[1]);
     return Eigen::Vector3d(horizontal_m, horizontal_m, stddev_m[2]).cwiseAbs2().asDiagonal();
   };
-  submap.duplicates = mergeDuplicates(config_.duplicates, fused_associations, seen, detector_cov, landmarks);
+  submap.duplicates = mergeDuplicates(config_.duplicates, config_.association.split_prob, fused_associations, seen,
+                                      detector_cov, landmarks);
   if (!submap.duplicates.empty()) {
     useFirstNames(submap.duplicates, submap.associations);
     submap.near = findNearLandmarks(finished.frames, submap.associations, partsGate(config_));

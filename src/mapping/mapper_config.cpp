@@ -34,8 +34,10 @@ void describe(AssociationConfig& config, Fields& fields) {
       "outlier_prob", config.outlier_prob, "", {0.0, 0.9},
       "Share of detections whose centroid is far off though the object is right (badly clustered, another side of "
       "a building); 0: Gaussian noise (the paper).");
-  fields.add("outlier_factor", config.outlier_factor, "", {1.0, 100.0}, "Their deviation, in deviations of the noise.");
-  fields.add("outlier_min_stddev", config.outlier_min_stddev_m, "m", {0.0, 100.0}, "Their deviation is at least this.");
+  fields.add("outlier_factor", config.outlier_factor, "", {1.0, 100.0},
+             "Their deviation along the ray, across it and vertically, in deviations of the noise,");
+  fields.add("outlier_min_stddev", config.outlier_min_stddev_m, "m", {0.0, 100.0},
+             "and what is added to it in all directions.");
   fields.add("ukf_gate", config.ukf_gate_m, "m", {0.1, 100.0},
              "Gate of the ukf baseline's nearest-neighbour assignment.");
   fields.add(

@@ -70,7 +70,8 @@ void DetectorCalibration::ClassStatistics::transfer(StateArchive& archive) {
 
 void DetectorCalibration::transfer(StateArchive& archive) {
   transferFixed(archive, statistics_);
-  archive(past_);
+  archive(past_, detections_, neighbours_);
+  archive.require(neighbours_ <= detections_, "more neighbours than detections");
   while (static_cast<int>(past_.size()) > config_.lag_frames) past_.pop_front();
 }
 

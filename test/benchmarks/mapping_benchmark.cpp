@@ -24,7 +24,7 @@ TreeInput makeInput(const std::vector<Eigen::Vector3d>& objects, std::size_t fra
     const Eigen::Vector3d noise_m(rng.normal(), rng.normal(), rng.normal());
     measurement.position_m = objects[rng.index(objects.size())] + noise_m;
     measurement.cov_m2 = Eigen::Matrix3d::Identity();
-    measurement.outlier_variance_m2.setConstant(4.0);
+    measurement.outlier_cov_m2 = 4.0 * Eigen::Matrix3d::Identity();
     measurement.id_if_new = kMeasurements * (frame + 1) + static_cast<LandmarkId>(i);
     input.measurements.push_back(measurement);
   }

@@ -56,7 +56,7 @@ TEST(AssociationGateTest, CandidatesAreJustTheLandmarksInsideTheGate) {
     for (int i = 0; i < 40; ++i) {
       measurements.push_back(makeMeasurement(0.0, 0));
       measurements.back().position_m = uniform3(20.0);
-      measurements.back().outlier_variance_m2 = uniform3(0.5);
+      measurements.back().outlier_cov_m2.diagonal() = uniform3(0.5);
     }
     AssociationProblem problem;
     model.formulate(hypothesis, measurements, 0.0, problem);
@@ -69,7 +69,7 @@ TEST(AssociationGateTest, CandidatesAreJustTheLandmarksInsideTheGate) {
         const Gaussian3& landmark = hypothesis.landmarks[j]->position;
         const Eigen::Vector3d d = measurements[i].position_m - landmark.mean_m;
         Eigen::Matrix3d cov = landmark.cov_m2 + measurements[i].cov_m2;
-        if (outlier_prob > 0.0) cov.diagonal() += measurements[i].outlier_variance_m2;
+        if (outlier_prob > 0.0) cov += measurements[i].outlier_cov_m2;
         const bool is_near = d.head<2>().cwiseAbs().maxCoeff() <= config.association.max_gate_m;
         if (is_near && d.dot(cov.inverse() * d) <= 16.266) expected.insert(static_cast<int>(j));  // chi^2_3 of 0.999
       }

@@ -97,7 +97,7 @@ TEST(AssociationTest, OutliersAreAMixtureOfTwoGaussians) {
   hypothesis.landmarks = {makeLandmark(1, 0.0, 0, 1)};
   for (const double x_m : {0.0, 0.35, 0.5, 1.0}) {
     Measurement measurement = makeMeasurement(x_m, 0);
-    measurement.outlier_variance_m2.setConstant(0.18);
+    measurement.outlier_cov_m2 = 0.18 * Eigen::Matrix3d::Identity();
     AssociationProblem problem;
     model.formulate(hypothesis, {measurement}, 0.0, problem);
     const auto density = [&](double variance_m2) {

@@ -91,5 +91,22 @@ TEST(RunningMedianTest, IsTheMedianWithinABin) {
   EXPECT_NEAR(median.median(), 0.51, 0.03);
 }
 
+TEST(DetectorCalibrationTest, ObjectsThatAreNeverSeenTwiceInARowTeachNothing) {
+  DetectorCalibration calibration({}, makeTable(0.05));
+  for (int f = 0; f < 300; ++f) {
+    Detections detections(f % 10 < 2 ? 1 : 0);  // one of two that stand side by side, then the other
+    for (Detection& detection : detections) detection.position_m = {5.0, f % 10 == 0 ? 0.1 : -0.1, 0.0};
+    if (f % 10 >= 2) continue;
+    calibration.add(Pose::identity(), detections);
+    for (int k = 0; k < 12 && f % 10 == 1; ++k) {
+      Detections elsewhere(1);
+      elsewhere[0].position_m = {5.0, 20.0 + 10.0 * (f + k), 0.0};
+      calibration.add(Pose::identity(), elsewhere);
+    }
+  }
+  EXPECT_TRUE(calibration.noiseStddev(0, 5.0).isApprox(Eigen::Vector3d::Constant(0.05), 0.05))
+      << calibration.noiseStddev(0, 5.0).transpose();
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam

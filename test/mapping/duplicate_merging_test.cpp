@@ -1,9 +1,13 @@
 #include "semantic_mht_slam/mapping/duplicate_merging.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace semantic_mht_slam {
 namespace {
+
+constexpr double kBoxProb = 0.015;
 
 MixtureLandmark makeLandmark(LandmarkId id, double x, int observations, ClassIndex class_index = 0) {
   MixtureLandmark landmark;
@@ -37,7 +41,7 @@ Eigen::Matrix3d detectorCov(ClassIndex) {
 TEST(DuplicateMergingTest, NamesThatAlternateAtOnePlaceAreOneObject) {
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 6)};
   const auto merged =
-      mergeDuplicates({}, makeFrames([](std::size_t f) { return f % 5 == 0; }), {}, detectorCov, landmarks);
+      mergeDuplicates({}, kBoxProb, makeFrames([](std::size_t f) { return f % 5 == 0; }), {}, detectorCov, landmarks);
   ASSERT_EQ(merged.size(), 1U);
   EXPECT_EQ(merged[0].first, 2U);
   EXPECT_EQ(merged[0].second, 1U);
@@ -49,23 +53,55 @@ TEST(DuplicateMergingTest, NamesThatAlternateAtOnePlaceAreOneObject) {
 TEST(DuplicateMergingTest, ObjectsThatAreSeenTogetherStayTwo) {
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 24)};
   EXPECT_TRUE(
-      mergeDuplicates({}, makeFrames([](std::size_t f) { return f % 5 != 0; }), {}, detectorCov, landmarks).empty());
+      mergeDuplicates({}, kBoxProb, makeFrames([](std::size_t f) { return f % 5 != 0; }), {}, detectorCov, landmarks)
+          .empty());
   EXPECT_EQ(landmarks.size(), 2U);
 }
 
 TEST(DuplicateMergingTest, OtherPlacesAndOtherClassesStayTwo) {
   const auto frames = makeFrames([](std::size_t f) { return f % 5 == 0; });
   std::vector<MixtureLandmark> apart = {makeLandmark(1, 0.0, 24), makeLandmark(2, 5.0, 6)};
-  EXPECT_TRUE(mergeDuplicates({}, frames, {}, detectorCov, apart).empty());
+  EXPECT_TRUE(mergeDuplicates({}, kBoxProb, frames, {}, detectorCov, apart).empty());
   std::vector<MixtureLandmark> other_class = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 6, 1)};
-  EXPECT_TRUE(mergeDuplicates({}, frames, {}, detectorCov, other_class).empty());
+  EXPECT_TRUE(mergeDuplicates({}, kBoxProb, frames, {}, detectorCov, other_class).empty());
+}
+
+/// Eight objects of another class, 10 m from each other; none at 0.
+std::vector<MixtureLandmark> withSurroundings(std::vector<MixtureLandmark> landmarks) {
+  for (LandmarkId i = 0; i < 8; ++i) {
+    landmarks.push_back(makeLandmark(10 + i, 10.0, 9));
+    landmarks.back().position.mean_m = {10.0 * std::cos(0.25 * M_PI * static_cast<double>(i)),
+                                        10.0 * std::sin(0.25 * M_PI * static_cast<double>(i)), 0.0};
+  }
+  return landmarks;
+}
+
+TEST(DuplicateMergingTest, AnObjectUnderTwoClassesInOneFrameIsOne) {
+  const auto with_it = [](std::size_t f) { return f % 5 == 1 || f % 5 == 2; };
+  std::vector<MixtureLandmark> landmarks = withSurroundings({makeLandmark(1, 0.0, 24), makeLandmark(2, 0.1, 12, 1)});
+  const auto merged = mergeDuplicates({}, kBoxProb, makeFrames(with_it), {}, detectorCov, landmarks);
+  ASSERT_EQ(merged.size(), 1U);
+  EXPECT_EQ(merged[0], SameLandmark(2, 1));
+  EXPECT_EQ(landmarks[0].mostLikelyClass(), 0);
+  std::vector<MixtureLandmark> without = withSurroundings({makeLandmark(1, 0.0, 24), makeLandmark(2, 0.1, 12, 1)});
+  EXPECT_TRUE(mergeDuplicates({}, 0.0, makeFrames(with_it), {}, detectorCov, without).empty()) << "no second boxes";
+}
+
+TEST(DuplicateMergingTest, OtherClassesBesideOrAloneStayTwo) {
+  const auto with_it = [](std::size_t f) { return f % 5 == 1 || f % 5 == 2; };
+  std::vector<MixtureLandmark> beside = withSurroundings({makeLandmark(1, 0.0, 24), makeLandmark(2, 1.5, 12, 1)});
+  EXPECT_TRUE(mergeDuplicates({}, kBoxProb, makeFrames(with_it), {}, detectorCov, beside).empty());
+  const auto alone = [](std::size_t f) { return f % 5 == 0 || f % 5 == 1; };
+  std::vector<MixtureLandmark> there = withSurroundings({makeLandmark(1, 0.0, 24), makeLandmark(2, 0.1, 12, 1)});
+  EXPECT_TRUE(mergeDuplicates({}, kBoxProb, makeFrames(alone), {}, detectorCov, there).empty());
 }
 
 TEST(DuplicateMergingTest, NothingIsMergedWhenSwitchedOff) {
   DuplicateConfig config;
   config.merge = false;
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 6)};
-  EXPECT_TRUE(mergeDuplicates(config, makeFrames([](std::size_t f) { return f % 5 == 0; }), {}, detectorCov, landmarks)
+  EXPECT_TRUE(mergeDuplicates(config, kBoxProb, makeFrames([](std::size_t f) { return f % 5 == 0; }), {}, detectorCov,
+                              landmarks)
                   .empty());
 }
 
@@ -74,10 +110,11 @@ TEST(DuplicateMergingTest, WhatAFrameShowsSideBySideStaysTwoHoweverSeldom) {
   SideBySide seen;
   seen.add({{7, 0, 1}, {7, 1, 2}}, {});
   std::vector<MixtureLandmark> landmarks = {makeLandmark(1, 0.0, 24), makeLandmark(2, 0.5, 7)};
-  EXPECT_TRUE(mergeDuplicates({}, frames, seen, detectorCov, landmarks).empty());
+  EXPECT_TRUE(mergeDuplicates({}, kBoxProb, frames, seen, detectorCov, landmarks).empty());
   SideBySide parts;
   parts.add({{7, 0, 1}, {7, 1, 2}}, {{1, 2, 1}});
-  EXPECT_EQ(mergeDuplicates({}, frames, parts, detectorCov, landmarks).size(), 1U) << "two parts of one object";
+  EXPECT_EQ(mergeDuplicates({}, kBoxProb, frames, parts, detectorCov, landmarks).size(), 1U)
+      << "two parts of one object";
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ TreeInput makeInput(Rng& rng, std::size_t frame, int count) {
     Measurement measurement;
     measurement.position_m = {rng.uniform(0.0, 12.0), rng.uniform(0.0, 12.0), rng.normal(0.0, 0.2)};
     measurement.cov_m2 = 0.2 * Eigen::Matrix3d::Identity();
-    measurement.outlier_variance_m2.setConstant(1.0);
+    measurement.outlier_cov_m2.setIdentity();
     measurement.class_index = static_cast<ClassIndex>(rng.index(2));
     measurement.row = i;
     measurement.id_if_new = 1000 * (frame + 1) + static_cast<LandmarkId>(i);

@@ -34,7 +34,7 @@ inline Measurement makeMeasurement(const Eigen::Vector3d& position_m, LandmarkId
   Measurement measurement;
   measurement.position_m = position_m;
   measurement.cov_m2 = 0.04 * Eigen::Matrix3d::Identity();
-  measurement.outlier_variance_m2.setConstant(0.36);
+  measurement.outlier_cov_m2 = 0.36 * Eigen::Matrix3d::Identity();
   measurement.id_if_new = id_if_new;
   return measurement;
 }

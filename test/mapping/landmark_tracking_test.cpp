@@ -21,7 +21,7 @@ Gaussian3 updatedPole(MeasurementModel model, bool is_outlier, bool is_pose_unce
   Measurement measurement = makeMeasurement({10.3, 0.0, 0.0}, 100);
   measurement.ray_m = measurement.position_m;
   measurement.noise_stddev_m.setConstant(std::sqrt(kVariance_m2));
-  measurement.outlier_variance_m2.setConstant(kOutlierVariance_m2);
+  measurement.outlier_cov_m2 = kOutlierVariance_m2 * Eigen::Matrix3d::Identity();
   if (is_pose_uncertain) {
     measurement.pose_cov_m2 = kPoseVariance_m2 * Eigen::Matrix3d::Identity();
     measurement.cov_m2 += measurement.pose_cov_m2;

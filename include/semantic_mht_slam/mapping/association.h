@@ -98,10 +98,10 @@ class AssociationModel {
   void collectCandidates(const MapHypothesis& hypothesis, const Measurement& detected, double driven_m,
                          const std::vector<AssociationProblem::Reachable>& reachable,
                          std::vector<Candidate>& candidates) const;
-  bool isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2,
+  bool isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eigen::Matrix3d& outlier_cov_m2,
                            const Eigen::Vector3d& d) const;
   /// Fills all of a candidate but the landmark and what its class says; false: outside the gate.
-  bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Vector3d& outlier_variance_m2, const Eigen::Vector3d& d,
+  bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Matrix3d& outlier_cov_m2, const Eigen::Vector3d& d,
                        Candidate& candidate) const;
   double logCountPrior(int observations) const;
   void addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const;

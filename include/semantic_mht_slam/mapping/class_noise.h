@@ -10,9 +10,9 @@ struct Measurement;
 
 /// Noise of the centroids of a class's objects, as a detector without stated covariances measures them at some range.
 struct ClassNoise {
-  Eigen::Vector3d stddev_m = Eigen::Vector3d::Zero();  ///< along the ray in the plane, across it, vertically
-  double outlier_variance_m2 = 0.0;                    ///< added if the centroid is far off
-  double wander_variance_per_m = 0.0;                  ///< growth with the distance driven
+  Eigen::Vector3d stddev_m = Eigen::Vector3d::Zero();             ///< along the ray in the plane, across it, vertically
+  Eigen::Vector3d outlier_variance_m2 = Eigen::Vector3d::Zero();  ///< added if the centroid is far off, same axes
+  double wander_variance_per_m = 0.0;                             ///< growth with the distance driven
 };
 
 /// What the noise of a measurement is if it shows an object of a class other than the detected one: how far a centroid
@@ -20,9 +20,12 @@ struct ClassNoise {
 /// stated by the detector stays as it is.
 struct ObjectNoise {
   Eigen::Matrix3d cov_m2;
-  Eigen::Vector3d outlier_variance_m2;
+  Eigen::Matrix3d outlier_cov_m2;
   double wander_variance_per_m;
 };
+
+/// Columns, in the axes of the submap: along the ray in the plane of the base, across it, upwards.
+Eigen::Matrix3d rayAxes(const Measurement& measurement);
 
 ObjectNoise noiseOfObject(const Measurement& measurement, ClassIndex object_class);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct CalibrationConfig {
   int lag_frames = 10;
   Length max_distance_m{4.0};
   double min_stddev_m = 0.03;
+  double min_share = 0.1;
 };
 
 void describe(CalibrationConfig& config, Fields& fields);
@@ -48,7 +50,8 @@ class RunningMedian {
 /// of mutual nearest neighbours of one class after the odometry's motion between the frames. Their medians survive the
 /// neighbours that are wrong. Residuals over one frame give the white noise along the line of sight, across it and
 /// vertically, by class and range; what is added over several frames gives how fast a centroid wanders with the
-/// viewpoint. Begins with the class table's values as if they had been measured a number of times.
+/// viewpoint. A detector that hardly ever shows an object in two consecutive frames has only wrong neighbours there,
+/// and teaches nothing. Begins with the class table's values as if they had been measured a number of times.
 class DetectorCalibration {
  public:
   DetectorCalibration(const CalibrationConfig& config, const ClassTable& classes);
@@ -89,12 +92,23 @@ class DetectorCalibration {
     void transfer(StateArchive& archive);
   };
 
-  void compare(const PastFrame& past, const PastFrame& now, bool is_lagged);
+  /// An object of a frame and its mutual nearest neighbour in an earlier one.
+  struct Neighbours {
+    ClassIndex class_index;
+    Eigen::Vector3d position_m;  ///< now, base frame
+    Eigen::Vector3d residual_m;  ///< now less then
+  };
+
+  std::vector<Neighbours> neighbours(const PastFrame& past, const PastFrame& now) const;
+  void learnNoise(const PastFrame& past, const PastFrame& now);
+  void learnWander(const PastFrame& past, const PastFrame& now);
   std::vector<double> reaches() const;
 
   CalibrationConfig config_;
   std::vector<ClassStatistics> statistics_;
   std::deque<PastFrame> past_;
+  std::uint64_t detections_ = 0;
+  std::uint64_t neighbours_ = 0;  ///< of them, in the frame before
 };
 
 }  // namespace semantic_mht_slam

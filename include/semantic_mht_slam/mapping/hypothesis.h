@@ -24,7 +24,7 @@ struct Measurement {
   Eigen::Matrix3d pose_cov_m2 = Eigen::Matrix3d::Zero();  ///< what the pose's uncertainty has added to `cov_m2`
   ClassIndex class_index = 0;
   int row = 0;
-  Eigen::Vector3d outlier_variance_m2 = Eigen::Vector3d::Zero();  ///< added if the centroid is far off, submap axes
+  Eigen::Matrix3d outlier_cov_m2 = Eigen::Matrix3d::Zero();  ///< added if the centroid is far off
   double wander_variance_per_m = 0.0;  ///< growth of a landmark's variance with the distance driven, by class
   LandmarkId id_if_new = kNoLandmark;  ///< the same in every hypothesis that makes a landmark of it
   /// By class of the object that it may show; null: the detector has stated its noise.
