@@ -28,10 +28,17 @@ void addTopic(const TopicStatus& topic, DiagnosticStatusWrapper& status) {
   status.add("topic", topic.topic);
   status.add("publishers", topic.publishers);
   status.add("messages", topic.received);
+  status.add("lost before they came", topic.lost);
   status.add("rate (Hz)", formatFixed(topic.rate_hz, 2));
   if (topic.silent_s) status.add("silent for (s)", formatFixed(*topic.silent_s, 1));
   if (topic.stamp) status.add("newest stamp (s)", formatFixed(secondsFromStamp(*topic.stamp), 3));
   if (topic.delay_s) status.add("delay (s)", formatFixed(*topic.delay_s, 3));
+}
+
+void findLost(const TopicStatus& now, const TopicStatus& before, Finding& finding) {
+  finding.warn(now.lost > before.lost,
+               "messages of " + now.topic + " are lost before they come here, by the gaps in header.seq",
+               "raise queue_size where they are published, and look at the network and at the load of this machine");
 }
 
 /// "class ids 7, 99", or empty.
@@ -115,6 +122,7 @@ void diagnoseOdometry(const NodeStatus& now, const NodeStatus& before, Diagnosti
   finding.warn(counters.odometry_not_rising > before.estimator.counters.odometry_not_rising,
                odometry.topic + " holds stamps that do not rise",
                "let one node alone publish it, with a new header.stamp in every message");
+  findLost(odometry, before.odometry, finding);
   finding.otherwise(odometry.received == 0 ? "waiting for odometry"
                                            : formatFixed(odometry.rate_hz, 1) + " Hz on " + odometry.topic);
   addTopic(odometry, status);
@@ -177,6 +185,7 @@ void findObjectsFault(const NodeStatus& now, const NodeStatus& before, Finding& 
                objects.topic + " is stamped within a gap of the odometry", "odometry must not pause: see odometry");
   finding.warn(counters.frames_waiting_too_long > old.frames_waiting_too_long,
                objects.topic + " waits for odometry in vain", "see odometry");
+  findLost(objects, before.objects, finding);
   finding.warn(objects.silent_s.value_or(0.0) > kObjectsSilence_s && !hasEnded(now),
                "no objects on " + objects.topic + " for " + seconds(objects.silent_s.value_or(0.0)),
                "look at the detector; the pose goes on by odometry alone");

@@ -8,7 +8,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr std::uint32_t kSubscriberQueue = 1000;  // a burst until the callback moves it to the bounded queue
-constexpr double kOverdue_s = 0.1;                // of the worker, after which the pose goes out without it
+constexpr double kOverdue_s = 0.05;               // of the worker, after which the pose goes out without it
 constexpr Stamp kFarAhead = 60LL * 1000000000LL;
 
 double wallSeconds() {
@@ -21,27 +21,35 @@ void SlamNode::subscribe() {
   pose_timer_ = handle_.createWallTimer(ros::WallDuration(0.5 * kOverdue_s),
                                         [this](const ros::WallTimerEvent&) { publishOverduePose(); });
   const auto at_once = ros::TransportHints().tcpNoDelay();  // or TCP may keep a message for 40 ms
-  odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry>(
-      "odometry", kSubscriberQueue, [this](const nav_msgs::OdometryConstPtr& message) { receive(message); },
-      ros::VoidConstPtr(), at_once);
+  using OdometryEvent = const ros::MessageEvent<nav_msgs::Odometry const>&;
+  using ObjectsEvent = const ros::MessageEvent<SemanticObjectArray const>&;
+  const boost::function<void(OdometryEvent)> on_odometry = [this](OdometryEvent event) {
+    receive(event.getConstMessage(), event.getPublisherName());
+  };
+  const boost::function<void(ObjectsEvent)> on_objects = [this](ObjectsEvent event) {
+    receive(event.getConstMessage(), event.getPublisherName());
+  };
+  odometry_subscriber_ = handle_.subscribe<nav_msgs::Odometry, OdometryEvent>("odometry", kSubscriberQueue, on_odometry,
+                                                                              ros::VoidConstPtr(), at_once);
+  objects_subscriber_ = handle_.subscribe<SemanticObjectArray, ObjectsEvent>("objects", kSubscriberQueue, on_objects,
+                                                                             ros::VoidConstPtr(), at_once);
   ros::NodeHandle service_handle(handle_);
   service_handle.setCallbackQueue(&service_queue_);
   initial_pose_subscriber_ = service_handle.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
       "initialpose", 1, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) {
         other_failures_.run("initialpose", [&] { expectAt(*message); });
       });
-  objects_subscriber_ = handle_.subscribe<SemanticObjectArray>(
-      "objects", kSubscriberQueue, [this](const SemanticObjectArrayConstPtr& message) { receive(message); },
-      ros::VoidConstPtr(), at_once);
 }
 
-void SlamNode::receive(const nav_msgs::OdometryConstPtr& message) {
+void SlamNode::receive(const nav_msgs::OdometryConstPtr& message, const std::string& publisher) {
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);
     const ros::Time now = ros::Time::now();
     odometry_monitor_.arrived(toStamp(message->header.stamp), now.isZero() ? std::nullopt : std::optional(toStamp(now)),
                               wallSeconds());
+    odometry_gaps_.arrived(publisher, message->header.seq);
     unhandled_.push_back({message, ros::WallTime::now()});
+    if (unhandled_.size() > static_cast<std::size_t>(config_.node.queue_size)) unhandled_.pop_front();
   }
   queue_.push(message);
   publishOverduePose();
@@ -65,10 +73,11 @@ void SlamNode::publishOverduePose() {
   publisher_.publishDeadReckoning(T_odom_base, live_.get());
 }
 
-void SlamNode::receive(const SemanticObjectArrayConstPtr& message) {
+void SlamNode::receive(const SemanticObjectArrayConstPtr& message, const std::string& publisher) {
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);
     objects_monitor_.arrived(toStamp(message->header.stamp), odometry_monitor_.status(0.0).stamp, wallSeconds());
+    objects_gaps_.arrived(publisher, message->header.seq);
   }
   queue_.push(message);
 }

@@ -273,6 +273,8 @@ NodeStatus SlamNode::status() {
     const std::lock_guard<std::mutex> lock(status_mutex_);
     status.odometry = odometry_monitor_.status(now_s);
     status.objects = objects_monitor_.status(now_s);
+    status.odometry.lost = odometry_gaps_.lost();
+    status.objects.lost = objects_gaps_.lost();
     status.estimator = noted_estimator_;
     status.frame_times = frame_timer_.times();
   }

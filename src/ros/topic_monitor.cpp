@@ -1,11 +1,14 @@
 #include "semantic_mht_slam/ros/topic_monitor.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace semantic_mht_slam {
 namespace {
 
 constexpr double kWindow_s = 10.0;
+constexpr int kDenseRow = 10;
+constexpr std::size_t kMostPublishers = 1000;
 
 }  // namespace
 
@@ -17,6 +20,23 @@ void TopicMonitor::arrived(Stamp stamp, std::optional<Stamp> reference, double n
   if (reference) status_.delay_s = secondsFromStamp(*reference - stamp);
   arrivals_s_.push_back(now_s);
   while (arrivals_s_.front() < now_s - kWindow_s) arrivals_s_.pop_front();
+}
+
+void SequenceGaps::arrived(const std::string& publisher, std::uint32_t number) {
+  if (publishers_.size() >= kMostPublishers) publishers_.clear();
+  const auto [found, is_new] = publishers_.try_emplace(publisher);
+  Publisher& known = found->second;
+  const std::uint32_t before = std::exchange(known.newest, number);
+  if (is_new) return;
+  const std::uint32_t gap = std::exchange(known.gap, 0);
+  if (number <= before) {
+    known = {number, 0, false, 0};  // it began again, or the numbers are not one publisher's
+    return;
+  }
+  lost_ += gap;
+  known.in_a_row = number == before + 1 ? known.in_a_row + 1 : 0;
+  known.is_dense = known.is_dense || known.in_a_row >= kDenseRow;
+  if (known.is_dense) known.gap = number - before - 1;
 }
 
 TopicStatus TopicMonitor::status(double now_s) const {

@@ -58,7 +58,8 @@ TEST_P(DiagnosisTest, WhatWasDroppedLongAgoIsNoFaultAnyMore) {
   GetParam().cause(status);
   const bool is_about_drops =
       status.estimator.counters.odometry_invalid > fresh.counters.odometry_invalid ||
-      status.queue_dropped_odometry > 0 || status.queue_dropped_objects > 0 || status.estimator.graph.failures > 0 ||
+      status.queue_dropped_odometry > 0 || status.odometry.lost > 0 || status.objects.lost > 0 ||
+      status.queue_dropped_objects > 0 || status.estimator.graph.failures > 0 ||
       !status.estimator.refused.unknown_classes.empty() || status.estimator.refused.objects_without_transform > 0;
   if (!is_about_drops) return;
   DiagnosticStatusWrapper later;
@@ -207,6 +208,16 @@ const std::vector<Fault> kFaults = {
      DiagnosticStatus::WARN,
      [](NodeStatus& s) { s.queue_dropped_objects = 5; },
      {"too slow", "oldest objects"}},
+    {"LostOdometry",
+     diagnoseOdometry,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.odometry.lost = 3; },
+     {"/odometry are lost before they come here"}},
+    {"LostObjects",
+     diagnoseObjects,
+     DiagnosticStatus::WARN,
+     [](NodeStatus& s) { s.objects.lost = 3; },
+     {"/objects are lost before they come here"}},
     {"OdometryJumps",
      diagnoseOdometry,
      DiagnosticStatus::WARN,
@@ -272,17 +283,6 @@ TEST(DiagnosisOfABagTest, ABagThatIsOverIsNoFaultNorIsTheSilenceAfterIt) {
   DiagnosticStatusWrapper clock;
   diagnoseClock(status, status, clock);
   EXPECT_NE(clock.message.find("the bag is over"), std::string::npos) << clock.message;
-}
-
-TEST(TopicMonitorTest, RateIsThatOfTheMessagesAndFallsWhenTheyStop) {
-  TopicMonitor monitor;
-  for (int i = 0; i < 30; ++i) monitor.arrived(i, std::nullopt, 0.1 * i);
-  EXPECT_NEAR(monitor.status(2.9).rate_hz, 10.0, 1e-9);
-  for (int i = 30; i < 300; ++i) monitor.arrived(i, std::nullopt, 0.1 * i);
-  EXPECT_NEAR(monitor.status(29.95).rate_hz, 10.0, 0.11);
-  EXPECT_EQ(monitor.status(60.0).rate_hz, 0.0);
-  EXPECT_NEAR(*monitor.status(60.0).silent_s, 30.1, 1e-9);
-  EXPECT_EQ(monitor.status(60.0).received, 300U);
 }
 
 TEST(FrameTimerTest, PercentilesAreThoseOfTheNewestThousand) {

@@ -74,6 +74,26 @@ TEST(NodeFaultsTest, MoreObjectsThanTheEstimatorCanTakeDelayNoPoseAndTheOldestAr
   EXPECT_LT(late_s.back(), 1.0) << "on a busy machine; alone 0.2 s";
 }
 
+TEST(NodeFaultsTest, WhatIsLostBeforeItComesIsCountedByItsNumbers) {
+  RunningNode node("lossy", {"odometry:=numbered"});
+  ros::AdvertiseOptions options;
+  options.init<nav_msgs::Odometry>("numbered", 100);
+  options.has_header = false;  // the numbers stay those of the test
+  ros::Publisher publisher = node.handle().advertise(options);
+  ASSERT_TRUE(waitFor([&] { return publisher.getNumSubscribers() > 0 && !node.value("queue", "capacity").empty(); }));
+  for (std::uint32_t number = 1; number <= 50; ++number) {
+    if (number > 30 && number <= 37) continue;
+    const Pose pose{Eigen::Quaterniond::Identity(), {0.01 * number, 0.0, 0.0}};
+    nav_msgs::Odometry message =
+        toOdometry({stampFromSeconds(RunningNode::kBegin_s + 0.01 * number), pose}, "odom", "base_link");
+    message.header.seq = number;
+    publisher.publish(message);
+    ros::WallDuration(0.002).sleep();
+  }
+  EXPECT_TRUE(node.comesToSay("odometry", "messages", "43"));
+  EXPECT_TRUE(node.comesToSay("odometry", "lost before they came", "7"));
+}
+
 TEST(NodeFaultsTest, DetectionsLateByTwoSecondsAreAllUsed) {
   RunningNode node("late");
   ASSERT_TRUE(node.isReady());

@@ -68,8 +68,8 @@ class SlamNode {
     ros::WallTime since;
   };
 
-  void receive(const nav_msgs::OdometryConstPtr& message);
-  void receive(const SemanticObjectArrayConstPtr& message);
+  void receive(const nav_msgs::OdometryConstPtr& message, const std::string& publisher);
+  void receive(const SemanticObjectArrayConstPtr& message, const std::string& publisher);
   void subscribe();
   void advertiseServices();
   void advertiseRequests(ros::NodeHandle& handle);
@@ -155,6 +155,8 @@ class SlamNode {
   FrameTimer frame_timer_;
   TopicMonitor odometry_monitor_;
   TopicMonitor objects_monitor_;
+  SequenceGaps odometry_gaps_;
+  SequenceGaps objects_gaps_;
 
   // Of the worker, of the timer's thread, or of the spinner thread.
   ThrottledWarnings warnings_;
