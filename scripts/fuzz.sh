@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the fuzzers of test/fuzz (clang, libFuzzer, ASan, UBSan) and runs each for so many seconds.
-#   scripts/fuzz.sh SECONDS [TARGET ...]     targets: map_state csv yaml tree g2o trajectory
+#   scripts/fuzz.sh SECONDS [TARGET ...]     targets: those of test/fuzz/CMakeLists.txt, all by default
 # Ends with code 1 if one found something, or executed nothing. What was found stays in build/fuzz/findings.
 set -euo pipefail
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
@@ -9,37 +9,25 @@ seconds=${1:-}
 [[ "$seconds" =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: scripts/fuzz.sh SECONDS [TARGET ...]" >&2; exit 2; }
 shift
 targets=("$@")
-[ "${#targets[@]}" -gt 0 ] || targets=(map_state csv yaml tree g2o trajectory)
 command -v clang++ >/dev/null || { echo "fuzz: clang++ is missing: apt-get install clang" >&2; exit 2; }
 
 cmake -S "$REPOSITORY/test/fuzz" -B "$BUILD" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=None \
   -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache || true)" >"$BUILD.configure.log" 2>&1 ||
   { tail -n 20 "$BUILD.configure.log" >&2; exit 1; }
+if [ "${#targets[@]}" -eq 0 ]; then
+  mapfile -t targets < <(cmake --build "$BUILD" --target help | sed -nE 's/^\.\.\. fuzz_(.+)$/\1/p')
+fi
 for target in "${targets[@]}"; do
   cmake --build "$BUILD" --target "fuzz_$target" -- -j"$(nproc)" >"$BUILD/build.log" 2>&1 ||
     { grep -A5 "error:" "$BUILD/build.log" | head -n 40 >&2; exit 1; }
 done
 
-# Small corpora of what is good.
-seed() {
-  local target=$1 folder=$2
-  mkdir -p "$folder"
-  case "$target" in
-    map_state) SMHT_FUZZ_SEEDS="$folder" "$BUILD/fuzz_map_state" -runs=1 >/dev/null 2>&1 ;;
-    csv) printf 'frame,class,x,y,z,score,sxx,sxy,sxz,syy,syz,szz\n0,pole,1,2,3,.5,1,0,0,1,0,1\n7,trunk,-4,5e1,6,,,,,,,\n' >"$folder/objects" ;;
-    yaml) cp "$REPOSITORY"/config/*.yaml "$folder/" ;;
-    tree) head -c 4000 "$REPOSITORY/config/submap_evaluator.yaml" >"$folder/begin" && cp "$REPOSITORY/config/submap_evaluator.yaml" "$folder/" ;;
-    g2o) printf 'VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nVERTEX_SE3:QUAT 2 0 0 0 0 0 0 1\n' >"$folder/graph" ;;
-    trajectory) printf '1 0 0 0 0 1 0 0 0 0 1 0\n' >"$folder/kitti" && printf '0.1 1 2 3 0 0 0 1\n' >"$folder/tum" && printf 'Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n' >"$folder/calib" ;;
-  esac
-}
-
 failed=0
 for target in "${targets[@]}"; do
   corpus="$BUILD/corpus/$target"
   findings="$BUILD/findings/$target"
-  mkdir -p "$findings"
-  seed "$target" "$corpus"
+  mkdir -p "$findings" "$corpus"
+  SMHT_FUZZ_SEEDS="$corpus" "$BUILD/fuzz_$target" -runs=1 >/dev/null 2>&1
   log="$BUILD/$target.log"
   if ! (cd "$findings" && ASAN_OPTIONS=detect_leaks=0 "$BUILD/fuzz_$target" -max_total_time="$seconds" \
     -rss_limit_mb=2048 -timeout=20 -print_final_stats=1 -close_fd_mask=1 "$corpus") >"$log" 2>&1; then

@@ -1,12 +1,19 @@
 #include "semantic_mht_slam/io/objects_file.h"
 
+#include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
 #include "support/square_drive.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace semantic_mht_slam;
-  static const ClassTable classes = makeStreetClasses();
-  const FuzzedFile file(data, size);
-  readOrRefuse([&] { readObjects(file.path(), classes, 100); });
-  return 0;
+namespace semantic_mht_slam {
+
+FuzzTarget csvTarget() {
+  const auto run = [classes = makeStreetClasses()](const std::string& bytes) {
+    const FuzzedFile file(bytes);
+    readOrRefuse([&] { readObjects(file.path(), classes, 100); });
+  };
+  return {"csv",
+          run,
+          {"frame,class,x,y,z,score,sxx,sxy,sxz,syy,syz,szz\n0,pole,1,2,3,.5,1,0,0,1,0,1\n7,trunk,-4,5e1,6,,,,,,,\n"}};
 }
+
+}  // namespace semantic_mht_slam

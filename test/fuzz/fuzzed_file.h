@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
 #include <string>
 
@@ -12,11 +10,11 @@
 
 namespace semantic_mht_slam {
 
-/// The bytes of a fuzzer as a file in memory.
+/// Bytes as a file in memory.
 class FuzzedFile {
  public:
-  FuzzedFile(const std::uint8_t* data, std::size_t size) : file_(::memfd_create("fuzzed", 0)) {
-    if (file_ < 0 || ::write(file_, data, size) != static_cast<ssize_t>(size)) std::abort();
+  explicit FuzzedFile(const std::string& bytes) : file_(::memfd_create("fuzzed", 0)) {
+    if (file_ < 0 || ::write(file_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) std::abort();
   }
   ~FuzzedFile() { ::close(file_); }
   FuzzedFile(const FuzzedFile&) = delete;
@@ -28,7 +26,7 @@ class FuzzedFile {
   int file_;
 };
 
-/// A file may be refused; any other exception is a finding.
+/// Bytes may be refused; any other exception is a finding.
 template <class Read>
 void readOrRefuse(const Read& read) {
   try {

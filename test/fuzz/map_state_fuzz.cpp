@@ -1,54 +1,68 @@
 // A section of a map file, as it is after its digest was found right: the first byte says which, the others are its
-// bytes. What is not refused is driven on with. With SMHT_FUZZ_SEEDS=FOLDER writes the sections of a good map there.
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
+// bytes.
+#include <memory>
 
 #include "semantic_mht_slam/slam/slam.h"
 
+#include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
 #include "support/square_drive.h"
 
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kDriven = 130;
-constexpr int kFurther = 20;
+constexpr int kFurther = 100;
 
-struct Fixture {
+/// An estimator that has driven so far, and what follows.
+struct Driven {
   const SlamConfig config = defaultsOf(Method::kDpmhm);
   const ClassTable classes = makeStreetClasses();
   const SquareDrive drive{7};
+  const int frames;
   SlamState state;
 
-  Fixture() {
+  explicit Driven(int driven) : frames(driven) {
     Slam slam(config, classes);
-    drive.feed(slam, 0, kDriven);
+    drive.feed(slam, 0, frames);
     state = slam.snapshot();
-    const char* folder = std::getenv("SMHT_FUZZ_SEEDS");
-    for (std::size_t i = 0; folder != nullptr && i < state.sections.size(); ++i) {
-      std::ofstream seed(std::string(folder) + "/" + state.sections[i].name, std::ios::binary);
-      seed.put(static_cast<char>(i));
-      seed << state.sections[i].bytes;
+  }
+
+  std::vector<std::string> seeds() const {
+    std::vector<std::string> seeds;
+    for (std::size_t i = 0; i < state.sections.size(); ++i) {
+      seeds.push_back(std::string(1, static_cast<char>(i)) + state.sections[i].bytes);
     }
+    return seeds;
+  }
+
+  template <class Use>
+  void load(const std::string& bytes, const Use& use) const {
+    if (bytes.empty()) return;
+    SlamState changed = state;
+    changed.sections[static_cast<unsigned char>(bytes[0]) % changed.sections.size()].bytes = bytes.substr(1);
+    std::unique_ptr<Slam> slam;
+    readOrRefuse([&] { slam = std::make_unique<Slam>(config, classes, changed); });
+    if (slam != nullptr) use(*slam);
   }
 };
 
 }  // namespace
-}  // namespace semantic_mht_slam
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace semantic_mht_slam;
-  static const Fixture fixture;
-  if (size == 0) return 0;
-  SlamState state = fixture.state;
-  state.sections[data[0] % state.sections.size()].bytes.assign(reinterpret_cast<const char*>(data) + 1, size - 1);
-  readOrRefuse([&] {
-    Slam slam(fixture.config, fixture.classes, state);
-    fixture.drive.feed(slam, kDriven, kDriven + kFurther);
+FuzzTarget mapSectionTarget() {
+  const auto driven = std::make_shared<Driven>(60);
+  return {"map_section", [driven](const std::string& bytes) { driven->load(bytes, [](Slam&) {}); }, driven->seeds()};
+}
+
+FuzzTarget mapStateTarget() {
+  const auto driven = std::make_shared<Driven>(130);
+  const auto goOn = [driven](Slam& slam) {
+    driven->drive.feed(slam, driven->frames, driven->frames + kFurther);
     slam.finish();
     trajectoryOf(slam);
     landmarksOf(slam);
-  });
-  return 0;
+    slam.snapshot();
+  };
+  return {"map_state", [driven, goOn](const std::string& bytes) { driven->load(bytes, goOn); }, driven->seeds()};
 }
+
+}  // namespace semantic_mht_slam

@@ -1,17 +1,32 @@
+#include "semantic_mht_slam/io/label_map_file.h"
+#include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/slam/slam.h"
 
+#include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
+#include "support/square_drive.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace semantic_mht_slam;
-  const FuzzedFile file(data, size);
-  readOrRefuse([&] { readClassTable(file.path()); });
-  readOrRefuse([&] {
-    SlamConfig config;
-    Fields fields;
-    describe(config, fields);
-    applySettings(readSettings(file.path()), fields);
-  });
-  return 0;
+namespace semantic_mht_slam {
+
+FuzzTarget yamlTarget() {
+  const auto run = [classes = makeStreetClasses()](const std::string& bytes) {
+    const FuzzedFile file(bytes);
+    readOrRefuse([&] { readClassTable(file.path()); });
+    readOrRefuse([&] { readLabelMap(file.path(), classes); });
+    readOrRefuse([&] {
+      SlamConfig config;
+      Fields fields;
+      describe(config, fields);
+      applySettings(readSettings(file.path()), fields);
+    });
+  };
+  return {"yaml",
+          run,
+          {"mapper:\n  tree:\n    max_hypotheses: 20\nseed: 3\n",
+           "classes:\n  - {id: 1, name: pole}\n  - {id: 2, name: trunk, static: true}\n",
+           "class_table: t.yaml\nlabels: {1: pole, 2: trunk}\nmoving: {3: trunk}\nignored: [0, 7]\n",
+           readFile(SMHT_SOURCE_DIR "/config/classes_semantic_kitti.yaml")}};
 }
+
+}  // namespace semantic_mht_slam

@@ -40,12 +40,17 @@ class DrivingNode {
   bool feed(int begin, int end) { return feed(begin, end, end); }
   bool feed(int begin, int end, int frames_used) {
     for (int i = begin; i < end; ++i) {
-      const StampedPose odometry{SquareDrive::stampAt(i), SquareDrive::odometryAt(i)};
-      objects_.publish(toMessage(odometry.stamp, "base_link", drive_.detectionsAt(i), table_));
-      odometry_.publish(toOdometry(odometry, "odom", "base_link"));
+      send(i);
       ros::WallDuration(0.002).sleep();
     }
     return waitFor([&] { return node.value("objects", "frames used") == std::to_string(frames_used); }, 60.0);
+  }
+
+  /// Sends one frame.
+  void send(int i) {
+    const StampedPose odometry{SquareDrive::stampAt(i), SquareDrive::odometryAt(i)};
+    objects_.publish(toMessage(odometry.stamp, "base_link", drive_.detectionsAt(i), table_));
+    odometry_.publish(toOdometry(odometry, "odom", "base_link"));
   }
 
   template <class Service>

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace semantic_mht_slam {
+
+/// What takes bytes that may come from anybody. One list for libFuzzer (driver/libfuzzer.cpp) and for fuzz_test.
+struct FuzzTarget {
+  std::string name;
+  std::function<void(const std::string& bytes)> run;  ///< refuses or takes them; any exception is a finding
+  std::vector<std::string> seeds;                     ///< a small corpus of what is good
+};
+
+FuzzTarget csvTarget();
+FuzzTarget estimatorTarget();
+FuzzTarget g2oTarget();
+FuzzTarget mapSectionTarget();
+FuzzTarget mapStateTarget();
+FuzzTarget messagesTarget();
+FuzzTarget scanTarget();
+FuzzTarget trajectoryTarget();
+FuzzTarget treeTarget();
+FuzzTarget yamlTarget();
+
+}  // namespace semantic_mht_slam

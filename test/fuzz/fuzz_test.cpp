@@ -1,0 +1,47 @@
+// What the fuzzers run, with a few inputs that are always the same: seeds, and seeds with some things changed. More
+// with SMHT_FUZZ_FACTOR.
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "fuzz/fuzz_target.h"
+#include "support/state_mutation.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+struct FuzzCase {
+  FuzzTarget (*target)();
+  int inputs;
+};
+
+class FuzzTest : public testing::TestWithParam<FuzzCase> {};
+
+TEST_P(FuzzTest, ChangedSeedsAreRefusedOrTaken) {
+  const FuzzTarget target = GetParam().target();
+  ASSERT_FALSE(target.seeds.empty());
+  for (const std::string& seed : target.seeds) EXPECT_NO_THROW(target.run(seed)) << target.name;
+  const char* factor = std::getenv("SMHT_FUZZ_FACTOR");
+  const int wanted = GetParam().inputs * (factor == nullptr ? 1 : std::atoi(factor));
+  int executed = 0;
+  for (int i = 0; i < wanted; ++i) {
+    Rng rng = Rng(5).fork(target.name, static_cast<std::uint64_t>(i));
+    std::string bytes = target.seeds[rng.index(target.seeds.size())];
+    for (std::size_t changes = 1 + rng.index(4); changes > 0; --changes) bytes = mutated(std::move(bytes), rng);
+    EXPECT_NO_THROW(target.run(bytes)) << target.name << ", input " << i;
+    ++executed;
+  }
+  EXPECT_GT(executed, 0);
+  EXPECT_EQ(executed, wanted);
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, FuzzTest,
+                         testing::Values(FuzzCase{csvTarget, 3000}, FuzzCase{estimatorTarget, 60},
+                                         FuzzCase{g2oTarget, 3000}, FuzzCase{mapSectionTarget, 300},
+                                         FuzzCase{mapStateTarget, 20}, FuzzCase{messagesTarget, 100},
+                                         FuzzCase{scanTarget, 500}, FuzzCase{trajectoryTarget, 3000},
+                                         FuzzCase{treeTarget, 300}, FuzzCase{yamlTarget, 500}),
+                         [](const auto& instance) { return instance.param.target().name; });
+
+}  // namespace
+}  // namespace semantic_mht_slam
