@@ -1,13 +1,14 @@
 // The state of a map file may come from anybody: whatever it holds, it is refused by the name of its section, or the
 // estimator goes on with it.
+#include <algorithm>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/slam/slam.h"
 
+#include "support/peak_memory.h"
 #include "support/square_drive.h"
 #include "support/state_mutation.h"
 
@@ -56,23 +57,31 @@ TEST_P(HostileStateTest, WhatIsChangedIsRefusedByNameOrLivedWith) {
   const std::string name = state_.sections.at(section).name;
   int loaded = 0;
   int refused = 0;
+  PeakMemory memory;
+  double most_mb = 0.0;
   for (int trial = 0; trial < trials(); ++trial) {
     Rng rng = Rng(11).fork(name, static_cast<std::uint64_t>(trial));
     SlamState state = state_;
     state.sections[section].bytes = mutated(std::move(state.sections[section].bytes), rng);
+    const bool is_measured = memory.begin();
     try {
       Slam slam(config_, classes_, state);
       ++loaded;
+      most_mb = std::max(most_mb, is_measured ? memory.grown_mb() : 0.0);
       if (loaded % kUsed != 1) continue;
       EXPECT_NO_THROW(useFor(slam, drive_, kFurther)) << name << ", trial " << trial;
     } catch (const InputError& error) {
       ++refused;
+      most_mb = std::max(most_mb, is_measured ? memory.grown_mb() : 0.0);
       EXPECT_NE(std::string(error.what()).find("section '"), std::string::npos) << error.what();
     } catch (const std::exception& error) {
       ADD_FAILURE() << name << ", trial " << trial << ": " << error.what();
     }
   }
   EXPECT_GT(refused, trials() / 10);
+  double state_mb = 0.0;
+  for (const StateSection& good : state_.sections) state_mb += 1e-6 * static_cast<double>(good.bytes.size());
+  EXPECT_LE(most_mb, 3.0 * state_mb + 50.0) << "of a state of " << state_mb << " MB";
   RecordProperty("loaded", loaded);
 }
 
