@@ -20,7 +20,9 @@ class PeakMemory {
   }
 
   /// Above what there was at `begin`.
-  double grown_mb() const { return megabytes("VmHWM:") - before_mb_; }
+  double grown_mb() const {
+    return megabytes("VmHWM:") - before_mb_;
+  }
 
  private:
   static double megabytes(const std::string& key) {
