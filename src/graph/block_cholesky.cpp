@@ -58,8 +58,7 @@ std::size_t BlockCholesky::Column::find(int row) const {
   return std::lower_bound(rows.begin(), rows.end(), row) - rows.begin();
 }
 
-BlockCholesky::BlockCholesky(int size, const std::vector<std::vector<int>>& cliques)
-    : columns_(size) {
+BlockCholesky::BlockCholesky(int size, const std::vector<std::vector<int>>& cliques) : columns_(size) {
   const std::vector<std::vector<int>> neighbours = neighboursOf(size, cliques);
   position_ = eliminationOrder(neighbours);
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
