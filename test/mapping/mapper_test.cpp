@@ -275,5 +275,25 @@ TEST(MapperTest, RangeBearingModelIsUsedAndAgreesWithTheAdditiveOneInAnUnambiguo
   EXPECT_LT(largest_m, 0.05);
 }
 
+TEST(MapperTest, WhatTheDetectorSaysMovesIsLeftOutAndCounted) {
+  Mapper mapper(MapperConfig(), makeTable());
+  Rng rng(1);
+  for (std::size_t f = 0; f < 5; ++f) {
+    Detections detections(2);
+    detections[0].position_m = {10.0, 5.0, 0.0};
+    detections[0].is_moving = true;
+    detections[1].position_m = {10.0, -5.0, 0.0};
+    detections[1].row = 1;
+    feed(mapper, {f, static_cast<Stamp>(f), Pose::identity(), detections}, rng);
+  }
+  const FinishedSubmap finished = mapper.finish();
+  EXPECT_EQ(mapper.movingCounts().flagged, 5U);
+  ASSERT_EQ(finished.submap.associations.size(), 10U);
+  for (const DetectionAssociation& association : finished.submap.associations) {
+    EXPECT_EQ(association.landmark == kNoLandmark, association.row == 0);
+  }
+  EXPECT_EQ(finished.submap.landmarks.size(), 1U);
+}
+
 }  // namespace
 }  // namespace semantic_mht_slam
