@@ -38,7 +38,8 @@ double ClutterModel::logDensity(ClassIndex class_index, const Eigen::Vector3d& p
   const double density_per_m3 = (of_class.clutter + prior) / (frames_ * volume_m3_ + prior / prior_density_per_m3_);
   const double share = PolarCells::areaShare(PolarCells::cellOf(position_m, max_range_m_));
   const double clutter = of_cell_[cellOf(class_index, position_m)].clutter;
-  return std::log((clutter + prior) / (frames_ * share * volume_m3_ + prior / density_per_m3));
+  const double learned = (clutter + prior) / (frames_ * share * volume_m3_ + prior / density_per_m3);
+  return std::log(std::max(learned, prior_density_per_m3_));
 }
 
 double ClutterModel::birthProb(ClassIndex class_index, const Eigen::Vector3d& position_m) const {
@@ -47,7 +48,7 @@ double ClutterModel::birthProb(ClassIndex class_index, const Eigen::Vector3d& po
   const double class_prob = (of_class.births + prior * birth_prob_) / (of_class.births + of_class.clutter + prior);
   const Counts& counts = of_cell_[cellOf(class_index, position_m)];
   const double prob = (counts.births + prior * class_prob) / (counts.births + counts.clutter + prior);
-  return std::clamp(prob, kLeastProb, 1.0 - kLeastProb);
+  return std::clamp(prob, kLeastProb, birth_prob_);
 }
 
 void ClutterModel::addFrames(std::size_t frames) {

@@ -26,7 +26,7 @@ template <class Predicate>
 std::vector<FusedAssociations> makeFrames(const Predicate& is_seen) {
   std::vector<FusedAssociations> frames;
   for (std::size_t f = 0; f < 30; ++f) {
-    FusedAssociations frame{f, {}};
+    FusedAssociations frame{f, {}, {}};
     if (f % 5 != 0) frame.landmark_of_measurement.push_back(1);
     if (is_seen(f)) frame.landmark_of_measurement.push_back(2);
     frames.push_back(frame);

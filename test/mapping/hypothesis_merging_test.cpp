@@ -17,7 +17,7 @@ MapHypothesis makeLeaf(double weight, double x_m, const History& history) {
   leaf.log_weight = std::log(weight);
   leaf.landmarks = {{landmark, {}}};
   for (std::size_t frame = 0; frame < history.size(); ++frame) {
-    leaf.history = std::make_shared<AssociationRecord>(AssociationRecord{leaf.history, frame, history[frame]});
+    leaf.history = std::make_shared<AssociationRecord>(AssociationRecord{leaf.history, frame, history[frame], {}});
   }
   return leaf;
 }

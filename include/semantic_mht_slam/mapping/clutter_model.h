@@ -22,7 +22,9 @@ void describe(ClutterConfig& config, Fields& fields);
 
 /// Where a detection of no known landmark comes from, by class and place round the base: from nothing (clutter), or
 /// from an object that is seen for the first time (a birth). Both are Poisson; their rates have Gamma priors, those of
-/// a cell round that of its class, that of the class round the configured one.
+/// a cell round that of its class, that of the class round the configured one. Wrong associations make landmarks of no
+/// object, too, which no detector is to blame for: clutter is never taken to be rarer, nor a birth likelier, than
+/// configured.
 class ClutterModel {
  public:
   /// Before anything is learned `detections_per_frame` of all classes are clutter, uniform over `volume_m3` and the
