@@ -70,7 +70,7 @@ TEST(MapRequestsTest, LandmarksAreRemovedAndLockedAndThatOutlivesTheNode) {
 }
 
 TEST(MapRequestsTest, ClosuresAreAddedAndRemoved) {
-  DrivingNode driving("closing", {"_back_end/close_loops:=false"});
+  DrivingNode driving("closing", {"_close_loops:=false"});
   ASSERT_TRUE(driving.isReady());
   ASSERT_TRUE(driving.feed(0, 620));
   const std::size_t before = driving.call<GetLandmarks>("get_landmarks").landmarks.size();

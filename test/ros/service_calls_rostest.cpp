@@ -68,7 +68,7 @@ class Caller {
 
 TEST(ServiceCallsTest, EachOfTwoHundredIsAnsweredDuringADriveAtTenTimesItsSpeedAndNoMessageIsLost) {
   const TemporaryFolder folder;
-  DrivingNode driving("stormy", {"_node/queue_size:=1000000", "_node/max_delay:=10000"});
+  DrivingNode driving("stormy", {"_node/queue_size:=1000000", "_node/max_delay:=3600"});
   ASSERT_TRUE(driving.isReady());
   std::atomic<int> left{kCalls};
   std::atomic<int> answered{0};

@@ -158,8 +158,8 @@ TEST_F(HypothesisPanelTest, NoTextMovesTheButtons) {
   geometry_msgs::PointStamped click;
   click.header.frame_id = "map";
   advertise<geometry_msgs::PointStamped>("/clicked_point").publish(click);
-  EXPECT_TRUE(comesToSay("landmark", "10"));
-  EXPECT_EQ(place(), before);
+  EXPECT_TRUE(comesToSay("landmark", "exists")) << textOf("landmark");
+  EXPECT_LE((place() - before).manhattanLength(), 1) << "but for rounding";
 }
 
 TEST_F(HypothesisPanelTest, WhatTheMapLacksIsNotDescribedAnyMore) {
