@@ -1,5 +1,6 @@
 // Messages with fields that nobody expects, by the way that they take in the node: gates, transforms, estimator, and
 // out again.
+#include <algorithm>
 #include <array>
 
 #include <tf2/buffer_core.h>
@@ -58,9 +59,14 @@ class FuzzedMessages {
     return kNames[values_.byte() % kNames.size()];
   }
 
+  /// Any that a message can hold.
+  ros::Time oddStamp() {
+    return toRosTime(std::clamp<Stamp>(values_.stamp(SquareDrive::stampAt(frame_)), 0, stampFromSeconds(4294967295.0)));
+  }
+
   nav_msgs::Odometry oddOdometry() {
     nav_msgs::Odometry message = toOdometry({0, values_.pose()}, frameName(), frameName());
-    message.header.stamp = toRosTime(values_.stamp(SquareDrive::stampAt(frame_)));
+    message.header.stamp = oddStamp();
     for (double& value : message.pose.covariance) value = values_.number();
     return message;
   }
@@ -68,7 +74,7 @@ class FuzzedMessages {
   SemanticObjectArray oddObjects() {
     SemanticObjectArray message;
     message.header.frame_id = frameName();
-    message.header.stamp = toRosTime(values_.stamp(SquareDrive::stampAt(frame_)));
+    message.header.stamp = oddStamp();
     message.objects.resize(values_.byte() % 8);
     for (SemanticObject& object : message.objects) {
       object.class_id = static_cast<std::uint16_t>(values_.byte() % 4);
@@ -85,7 +91,7 @@ class FuzzedMessages {
   }
 
   void addOddTransform() {
-    const Stamp stamp = values_.stamp(SquareDrive::stampAt(frame_));
+    const Stamp stamp = toStamp(oddStamp());
     const char* parent = frameName();
     const char* child = frameName();
     const Pose pose = values_.pose();
