@@ -151,9 +151,11 @@ TEST(PaperSettingTest, TheTreeDecidesByItsFeaturesWhichSubmapsAreSearched) {
 
 TEST(PaperSettingTest, EachSwitchChangesWhatComesOut) {
   const std::map<std::string, std::string> by_default = valuesOf(SystemConfig{});
-  // What these two do shows where classes are not certain, and where drift is larger than the gate.
+  // What these do shows where classes are not certain, where existence is judged, and where drift is larger than the
+  // gate.
   const std::map<std::string, std::vector<Setting>> shows_with = {
       {"learn_confusion", {{"class_model", "confusion", "test"}}},
+      {"clutter.learn", {{"detection.missed_detections", "true", "test"}}},
       {"place.drift_gate", {{"place.gate_base", "0", "test"}, {"place.gate_per_driven", "0", "test"}}}};
   EXPECT_TRUE(textOf(run(paperConfig())) == textOf(paperRun())) << "the same configuration gives the same result";
   for (const Setting& setting : readSettings(paperFile())) {
