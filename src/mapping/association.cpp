@@ -49,6 +49,7 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
       confusion_(classes.size(), wrongClassProb(config.association), config.association.confusion_samples),
       clutter_(config.clutter, classes.size(), config.association.false_positive_density,
                config.association.map_volume_m3, config.detection.max_range_m, config.detection.birth_prob),
+      neighbours_(classes.size(), config.association.max_gate_m),
       log_uniform_density_(-std::log(config.association.map_volume_m3) - std::log(static_cast<double>(class_count_))),
       log_inlier_prob_(std::log1p(-config.association.outlier_prob)),
       log_outlier_prob_(std::log(config.association.outlier_prob)),

@@ -59,18 +59,30 @@ MeasurementRole FrameInterpreter::roleOf(int measurement, int column) const {
   if (problem.isLandmark(column)) return {Kind::kLandmark, column, problem.candidate(measurement, column)};
   MeasurementRole role;
   role.kind = problem.isNew(column) ? Kind::kNew : Kind::kFalsePositive;
-  const double split_prob = config_.association.split_prob;
-  if (config_.estimator == Estimator::kUkf || split_prob == 0.0) return role;
+  if (config_.estimator == Estimator::kUkf || config_.association.split_prob == 0.0) return role;
   const Measurement& detected = expansion_.measurements[static_cast<std::size_t>(measurement)];
-  double likeliest = model_.logClutterDensity(detected) - std::log(split_prob);
+  double likeliest = 0.0;
   for (const Candidate& candidate : problem.gated[static_cast<std::size_t>(measurement)]) {
     const auto j = static_cast<std::size_t>(candidate.landmark);
     const bool may_be_part = is_seen_[j] != 0 && !leaf_.landmarks[j]->is_expected;
-    if (!may_be_part || candidate.log_part_likelihood <= likeliest) continue;
-    likeliest = candidate.log_part_likelihood;
+    if (!may_be_part) continue;
+    const double log_odds = logOddsOfPart(detected, candidate, *leaf_.landmarks[j]);
+    if (log_odds <= likeliest) continue;
+    likeliest = log_odds;
     role = {Kind::kSecondPart, candidate.landmark, nullptr};
   }
   return role;
+}
+
+/// That it is a second part of a landmark, against clutter and against a neighbour that was not seen before.
+double FrameInterpreter::logOddsOfPart(const Measurement& detected, const Candidate& candidate,
+                                       const TrackedLandmark& landmark) const {
+  const NeighbourDensity& neighbours = model_.neighbours();
+  const Eigen::Vector3d offset_m = detected.position_m - landmark.position.mean_m;
+  const double log_neighbour = neighbours.logDensity(detected.class_index, offset_m) +
+                               neighbours.logFirstProb(detected.class_index, landmark.observations);
+  return std::log(config_.association.split_prob) + candidate.log_part_likelihood -
+         logAdd(model_.logClutterDensity(detected), log_neighbour);
 }
 
 void FrameInterpreter::weighDetections(FrameInterpretation& interpretation) const {

@@ -216,6 +216,7 @@ FinishedSubmap Mapper::finish() {
   for (const MixtureLandmark& landmark : landmarks) {
     if (landmark.last_submap == id_) submap.landmarks.push_back(landmark);
   }
+  tree_.neighbours().add(id_, submap.landmarks, submap.associations);
   propagation_.endSubmap(id_, T_odom_submap_, landmarks, tree_.leaves().front());
   forgetSpans();
   track_of_detection_.clear();

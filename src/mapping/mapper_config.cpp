@@ -43,7 +43,7 @@ void describe(AssociationConfig& config, Fields& fields) {
   fields.add(
       "split_prob", config.split_prob, "", {0.0, 0.9},
       "Share of objects that are detected in two parts. A detection that would be new is a second part of a landmark "
-      "that another one took if that is likelier than clutter; 0: never (the paper).");
+      "that another one took if that is likelier than clutter or a neighbour; 0: never (the paper).");
 }
 
 void describe(TreeConfig& config, Fields& fields) {

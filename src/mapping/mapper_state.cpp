@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include "semantic_mht_slam/common/state_archive.h"
@@ -121,6 +122,19 @@ void ClutterModel::transfer(StateArchive& archive) {
   archive.require(frames_ >= 0.0, "a negative count");
 }
 
+void NeighbourDensity::Neighbours::transfer(StateArchive& archive) {
+  archive(objects, looks, first, pairs, all_pairs, height_squares_m2);
+  const auto areCounts = [](const auto& counts) {
+    return std::all_of(counts.begin(), counts.end(), [](double count) { return count >= 0.0; });
+  };
+  const bool are_counts = areCounts(looks) && areCounts(first) && areCounts(pairs);
+  archive.require(are_counts && objects >= 0.0 && all_pairs >= 0.0 && height_squares_m2 >= 0.0, "a negative count");
+}
+
+void NeighbourDensity::transfer(StateArchive& archive) {
+  transferFixed(archive, of_class_);
+}
+
 void MapBranching::transfer(StateArchive& archive) {
   auto& [landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad] = map_;
   archive(landmarks, stddev_xy_m, stddev_z_m, stddev_yaw_rad);
@@ -132,7 +146,7 @@ void MapBranching::transfer(StateArchive& archive) {
 }
 
 void MultiHypothesisTree::transfer(StateArchive& archive) {
-  archive(tracking_.detectionRate(), model_.confusion(), model_.clutter(), branching_);
+  archive(tracking_.detectionRate(), model_.confusion(), model_.clutter(), model_.neighbours(), branching_);
   transferLeaves(archive, leaves_);
   archive(next_hypothesis_id_);
   for (const MapHypothesis& leaf : leaves_) {

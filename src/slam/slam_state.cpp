@@ -127,7 +127,7 @@ struct Section {
 
 constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 4, transferInput},
                                  {"submaps", 3, transferSubmaps},   {"keyframes", 4, transferKeyframes},
-                                 {"graph", 4, transferGraph},       {"hypotheses", 7, transferMapper}};
+                                 {"graph", 4, transferGraph},       {"hypotheses", 8, transferMapper}};
 
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
 void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,

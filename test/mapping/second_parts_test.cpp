@@ -72,6 +72,26 @@ TEST(SecondPartsTest, TheMoreClutterTheFewerSecondParts) {
   EXPECT_NE(leafOfTwoParts(20.0, 1.75).history->landmark_of_measurement, (std::vector<LandmarkId>{1, 1}));
 }
 
+TEST(SecondPartsTest, WhereObjectsStandSideBySideADetectionBesideALandmarkIsANeighbour) {
+  MapperConfig config;
+  config.association.split_prob = 0.01;
+  MultiHypothesisTree tree(config, makeTable());
+  std::vector<MixtureLandmark> row;
+  for (int i = 0; i < 20; ++i) {
+    MixtureLandmark pole;
+    pole.id = i;
+    pole.position.mean_m = {1.0 * i, 0.0, 0.0};
+    pole.class_probs = makePole(0.0, 1)->class_probs;
+    pole.existence_prob = 1.0;
+    row.push_back(pole);
+  }
+  tree.neighbours().add(SubmapId(0), row, {});
+  tree.restart({makePole(10.0, 1)});
+  Rng rng(1);
+  tree.step(makeInputOf({makeMeasurement({10.0, 0.0, 0.0}, 100), makeMeasurement({10.0, 1.0, 0.0}, 101)}), rng);
+  EXPECT_EQ(tree.leaves().front().history->landmark_of_measurement, (std::vector<LandmarkId>{1, 101}));
+}
+
 TEST(SecondPartsTest, ASecondPartIsNoLandmarkAndCountsAsAFalsePositive) {
   const MapHypothesis leaf = leafOfTwoParts(1.0, 1.0);
   EXPECT_EQ(leaf.landmarks.size(), 1U);

@@ -7,6 +7,7 @@
 #include "semantic_mht_slam/mapping/clutter_model.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/mapping/neighbour_density.h"
 #include "semantic_mht_slam/models/class_table.h"
 
 namespace semantic_mht_slam {
@@ -82,6 +83,10 @@ class AssociationModel {
   /// How often detections show nothing, as it is known now.
   ClutterModel& clutter() { return clutter_; }
 
+  /// How densely objects of a class stand, as it is known now.
+  NeighbourDensity& neighbours() { return neighbours_; }
+  const NeighbourDensity& neighbours() const { return neighbours_; }
+
   /// log of the expected number of false positives of its class in a frame and a cubic metre where a measurement is.
   double logClutterDensity(const Measurement& measurement) const {
     return clutter_.logDensity(measurement.class_index, measurement.ray_m);
@@ -113,6 +118,7 @@ class AssociationModel {
   int class_count_;
   ClassConfusion confusion_;
   ClutterModel clutter_;
+  NeighbourDensity neighbours_;
   std::vector<double> log_class_prior_;
   std::vector<double> transition_variance_m2_;
   double log_uniform_density_;

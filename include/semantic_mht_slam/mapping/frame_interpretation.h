@@ -50,6 +50,7 @@ class FrameInterpreter {
 
  private:
   MeasurementRole roleOf(int measurement, int column) const;
+  double logOddsOfPart(const Measurement& detected, const Candidate& candidate, const TrackedLandmark& landmark) const;
   void weighDetections(FrameInterpretation& interpretation) const;
   void weighLandmarks(FrameInterpretation& interpretation) const;
 

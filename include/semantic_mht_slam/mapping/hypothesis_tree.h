@@ -39,6 +39,7 @@ class MultiHypothesisTree {
   /// How the detector confuses classes, and how often it shows nothing; both learn from finished submaps.
   ClassConfusion& confusion() { return model_.confusion(); }
   ClutterModel& clutter() { return model_.clutter(); }
+  NeighbourDensity& neighbours() { return model_.neighbours(); }
 
   /// How likely associations are.
   const AssociationModel& model() const { return model_; }
