@@ -1,51 +1,60 @@
 #!/usr/bin/env bash
-# Builds and runs the gtests with ASan and UBSan, or the rostests of the node with TSan, in a build folder of its own.
-#   scripts/sanitize.sh [address|thread] [TEST ...]     default: address, all gtests; thread: map_services node_faults
-# Ends with code 1 if a sanitizer reports something or a test fails.
+# Builds and runs the gtests with ASan and UBSan, or the rostests of the node with TSan.
+#   scripts/sanitize.sh [address|thread] [TEST ...]
+# Default: address, the gtests of all modules; thread: service_calls map_services node_faults, in a build of their own.
+# Ends with code 1 if a sanitizer reports something or a test fails; outputs are in build/instrumented, build/thread.
 set -uo pipefail
-REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
-export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"
+# shellcheck source=scripts/instrumented.sh
+source "$(dirname "${BASH_SOURCE[0]}")/instrumented.sh"
 kind=${1:-address}
 shift || true
+tests=("$@")
+failed=0
+
+# report NAME CODE LOG
+report() {
+  if [ "$2" -eq 0 ] && ! grep -qE "WARNING: ThreadSanitizer|ERROR: AddressSanitizer|runtime error:" "$3"; then
+    echo "sanitize: $1 is clean"
+  else
+    echo "sanitize: $1: see $3" >&2
+    failed=1
+  fi
+}
+
+address() {
+  instrumented_configure || exit 1
+  [ "${#tests[@]}" -gt 0 ] || mapfile -t tests < <(instrumented_targets '([a-z]+)_test')
+  mkdir -p "$INSTRUMENTED/profiles"
+  for name in "${tests[@]}"; do
+    instrumented_build "${name}_test" || { echo "sanitize: ${name}_test cannot be built" >&2; failed=1; continue; }
+    log="$INSTRUMENTED/$name.log"
+    LLVM_PROFILE_FILE="$INSTRUMENTED/profiles/$name.profraw" "$INSTRUMENTED/${name}_test" >"$log" 2>&1
+    report "$name" $? "$log"
+  done
+}
+
+thread() {
+  local workspace="$REPOSITORY/build/thread"
+  export TSAN_OPTIONS="suppressions=$REPOSITORY/test/support/tsan_suppressions.txt exitcode=66"
+  [ "${#tests[@]}" -gt 0 ] || tests=(service_calls map_services node_faults)
+  mkdir -p "$workspace"
+  cmake -S "$REPOSITORY" -B "$workspace/build" -DCMAKE_BUILD_TYPE=None -DCATKIN_ENABLE_TESTING=ON \
+    -DCATKIN_DEVEL_PREFIX="$workspace/devel" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DSEMANTIC_MHT_SLAM_RVIZ=OFF \
+    -DCMAKE_CXX_FLAGS="-fsanitize=thread -fno-omit-frame-pointer -O2 -g1" \
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache || true)" >"$workspace/configure.log" 2>&1 ||
+    { tail -n 20 "$workspace/configure.log" >&2; exit 1; }
+  for name in "${tests[@]}"; do
+    log="$workspace/$name.log"
+    cmake --build "$workspace/build" --target "${name}_rostest" -- -j"$(nproc)" >"$log" 2>&1 ||
+      { echo "sanitize: ${name}_rostest cannot be built ($log)" >&2; failed=1; continue; }
+    # shellcheck disable=SC1091
+    (set +u; source "$workspace/devel/setup.bash" && rostest --text "$REPOSITORY/test/ros/$name.test") >"$log" 2>&1
+    report "$name" $? "$log"
+  done
+}
+
 case "$kind" in
-  address) flags="-fsanitize=address,undefined -fno-sanitize-recover=undefined" ;;
-  thread) flags="-fsanitize=thread" ;;
+  address | thread) "$kind" ;;
   *) echo "sanitize: scripts/sanitize.sh [address|thread] [TEST ...]" >&2; exit 2 ;;
 esac
-WORKSPACE="$REPOSITORY/build/$kind"
-mkdir -p "$WORKSPACE"
-cmake -S "$REPOSITORY" -B "$WORKSPACE/build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCATKIN_ENABLE_TESTING=ON \
-  -DCATKIN_DEVEL_PREFIX="$WORKSPACE/devel" -DPYTHON_EXECUTABLE=/usr/bin/python3 \
-  -DCMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -O1" -DCMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache || true)" \
-  >"$WORKSPACE/configure.log" 2>&1 || { tail -n 20 "$WORKSPACE/configure.log" >&2; exit 1; }
-
-tests=("$@")
-if [ "${#tests[@]}" -eq 0 ]; then
-  tests=(common io models map mapping graph place slam app ros)
-  [ "$kind" = address ] || tests=(map_services node_faults)
-fi
-export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
-export TSAN_OPTIONS="suppressions=$REPOSITORY/test/support/tsan_suppressions.txt exitcode=66"
-failed=0
-for name in "${tests[@]}"; do
-  target=${name}_test
-  [ "$kind" = address ] || target="${name}_rostest"
-  log="$WORKSPACE/$name.log"
-  if ! cmake --build "$WORKSPACE/build" --target "$target" -- -j"$(nproc)" >"$log" 2>&1; then
-    echo "sanitize: $target cannot be built ($log)" >&2
-    failed=1
-    continue
-  fi
-  if [ "$kind" = address ]; then
-    "$WORKSPACE/devel/lib/semantic_mht_slam/$target" >"$log" 2>&1
-  else
-    (set +u; source "$WORKSPACE/devel/setup.bash" && rostest --text "$REPOSITORY/test/ros/$name.test") >"$log" 2>&1
-  fi
-  if [ $? -eq 0 ] && ! grep -q "WARNING: ThreadSanitizer" "$log"; then
-    echo "sanitize: $name is clean"
-  else
-    echo "sanitize: $name: see $log" >&2
-    failed=1
-  fi
-done
 exit "$failed"

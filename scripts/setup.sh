@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs what is missing (apt only) and builds the package into build/. Safe to run again: it does only what is left.
-#   scripts/setup.sh [--tests | --benchmark | --only PROGRAM...]
-# --tests builds the tests as well and installs what they need; --benchmark installs what the program `benchmark` needs; --only
-# builds what these programs need, which is less.
+#   scripts/setup.sh [--tests | --benchmark | --instrumented | --only PROGRAM...]
+# --tests builds the tests as well and installs what they need; --benchmark installs what the program `benchmark` needs;
+# --instrumented installs what fuzzers, sanitizers and coverage need and builds the messages alone; --only builds what
+# these programs need, which is less.
 set -euo pipefail
 
 # Every package that building and showing needs. The one list, with those that only the benchmark and the tests need below.
@@ -24,6 +25,7 @@ PACKAGES=(
 )
 BENCHMARK_PACKAGES=(python3-matplotlib python3-pandas python3-jinja2)
 TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest catkin-lint)
+INSTRUMENTED_PACKAGES=(clang llvm)
 
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"  # the system's Python has catkin; another one on the PATH may not
@@ -115,8 +117,14 @@ case "${1:-}" in
   "") ;;
   --tests) TARGETS+=(tests); PACKAGES+=("${TEST_PACKAGES[@]}") ;;
   --benchmark) PACKAGES+=("${BENCHMARK_PACKAGES[@]}") ;;
+  --instrumented)
+    PACKAGES+=("${INSTRUMENTED_PACKAGES[@]}")
+    # The sanitizers' libraries are a package of their own where clang only recommends them.
+    ! apt-cache show libclang-rt-dev >/dev/null 2>&1 || PACKAGES+=(libclang-rt-dev)
+    TARGETS=(semantic_mht_slam_generate_messages_cpp semantic_mht_slam_gencfg)
+    ;;
   --only) TARGETS=("${@:2}") ;;
-  *) fail "unknown option $1 (there are --tests, --benchmark and --only)" ;;
+  *) fail "unknown option $1 (there are --tests, --benchmark, --instrumented and --only)" ;;
 esac
 install_missing
 echo "setup: building"

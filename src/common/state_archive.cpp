@@ -80,15 +80,22 @@ void StateArchive::requireGoingOn() const {
   if (keep_reading_ && !keep_reading_()) throw InputError("reading was given up");
 }
 
-std::size_t StateArchive::count(std::size_t elements) {
+std::size_t StateArchive::count(std::size_t elements, std::size_t element_size) {
   requireGoingOn();
   const std::uint64_t result = varint(elements);
-  if (is_reading_ && result > input_.size()) fail("a list is longer than its state");
+  if (!is_reading_) return elements;
+  if (result > input_.size()) fail("a list is longer than its state");
+  takeMemory(result, element_size);
   return static_cast<std::size_t>(result);
 }
 
+void StateArchive::takeMemory(std::size_t elements, std::size_t element_size) {
+  if (elements > memory_ / element_size) fail("it takes more memory than a file of its size may");
+  memory_ -= elements * element_size;
+}
+
 void StateArchive::transferText(std::string& text) {
-  const std::size_t length = count(text.size());
+  const std::size_t length = count<char>(text.size());
   if (!is_reading_) {
     output_ += text;
     return;
@@ -121,7 +128,7 @@ void transfer(StateArchive& archive, Gaussian3& gaussian) {
 }
 
 void transfer(StateArchive& archive, std::vector<bool>& list) {
-  const std::size_t count = archive.count(list.size());
+  const std::size_t count = archive.count<char>(list.size());
   if (archive.isReading()) list.assign(count, false);
   for (std::size_t i = 0; i < count; ++i) {
     bool value = list[i];

@@ -37,7 +37,7 @@ class SceneOfSubmap {
 
   /// Objects that the submap gives are written as their ids.
   void transfer(StateArchive& archive, std::vector<SceneObject>& objects) const {
-    const std::size_t count = archive.count(objects.size());
+    const std::size_t count = archive.count<SceneObject>(objects.size());
     if (archive.isReading()) objects.clear();
     LandmarkId last = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -113,7 +113,7 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
 }
 
 void transferAssociations(StateArchive& archive, std::vector<DetectionAssociation>& associations) {
-  const std::size_t count = archive.count(associations.size());
+  const std::size_t count = archive.count<DetectionAssociation>(associations.size());
   if (archive.isReading()) associations.clear();
   DetectionAssociation last;
   for (std::size_t i = 0; i < count; ++i) {

@@ -43,7 +43,7 @@ using Landmarks = SharedValues<TrackedLandmark>;
 using Histories = SharedValues<AssociationRecord>;
 
 void transferValues(StateArchive& archive, Landmarks& landmarks) {
-  const std::size_t count = archive.count(landmarks.values().size());
+  const std::size_t count = archive.count<TrackedLandmark>(landmarks.values().size());
   for (std::size_t i = 0; i < count; ++i) {
     TrackedLandmark landmark;
     if (!archive.isReading()) landmark = *landmarks.values()[i];
@@ -62,7 +62,7 @@ void addHistory(const Histories::Pointer& newest, Histories& histories) {
 }
 
 void transferValues(StateArchive& archive, Histories& histories) {
-  const std::size_t count = archive.count(histories.values().size());
+  const std::size_t count = archive.count<AssociationRecord>(histories.values().size());
   for (std::size_t i = 0; i < count; ++i) {
     AssociationRecord record;
     if (!archive.isReading()) record = *histories.values()[i];
@@ -81,7 +81,7 @@ void transferLeaf(StateArchive& archive, const Landmarks& shared_landmarks, cons
   histories.transferPointer(archive, history);
   archive.require(log_weight <= kRounding && false_positives >= 0 && expected_found >= 0 && expected_missed >= 0.0,
                   "a hypothesis of a weight above one, or a negative count");
-  const std::size_t count = archive.count(landmarks.size());
+  const std::size_t count = archive.count<HypothesisLandmark>(landmarks.size());
   if (archive.isReading()) landmarks.clear();
   for (std::size_t i = 0; i < count; ++i) {
     if (archive.isReading()) landmarks.emplace_back();
@@ -130,7 +130,7 @@ void transferLeaves(StateArchive& archive, std::vector<MapHypothesis>& leaves) {
   }
   transferValues(archive, landmarks);
   transferValues(archive, histories);
-  const std::size_t count = archive.count(leaves.size());
+  const std::size_t count = archive.count<MapHypothesis>(leaves.size());
   if (count == 0) StateArchive::fail("a tree without leaves");
   if (archive.isReading()) leaves.clear();
   std::vector<double> log_weights;

@@ -42,7 +42,7 @@ void PlaceRecognizer::transfer(StateArchive& archive, std::vector<PlacesOfSubmap
   archive(has_filter);
   if (has_filter != paper_.has_value()) throw InputError("made with another place.chain than the present one");
   if (paper_) archive(*paper_);
-  const std::size_t count = archive.count(recent_.size());
+  const std::size_t count = archive.count<PlaceMatch>(recent_.size());
   if (archive.isReading()) recent_.clear();
   for (std::size_t i = 0; i < count; ++i) {
     if (archive.isReading()) recent_.emplace_back();

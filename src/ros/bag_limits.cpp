@@ -12,8 +12,11 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr std::uint64_t kMostGrowth = 50;
-constexpr std::uint64_t kSmall = 16U << 20U;  // of which a small bag may hold as much as it wants
+// Maps of drives grow to 1.1 to 1.7 times the file, and so does what is made of them in memory.
+constexpr std::uint64_t kMostGrowth = 4;
+constexpr std::uint64_t kSmall = 8U << 20U;  // of which a small bag may hold as much as it wants
+constexpr std::uint64_t kMostMade = 3;
+constexpr std::uint64_t kSmallMade = 32U << 20U;
 constexpr std::uint64_t kMostHeader = 1U << 20U;
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr char kChunk = 5;
@@ -43,6 +46,10 @@ std::string_view fieldOf(std::string_view header, std::string_view name) {
 
 std::uint64_t mostContent(std::uint64_t file_size) {
   return kSmall + kMostGrowth * file_size;
+}
+
+std::uint64_t mostMemory(std::uint64_t file_size) {
+  return kSmallMade + kMostMade * file_size;
 }
 
 void requireModestBag(const std::string& path) {

@@ -55,9 +55,11 @@ MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const Syst
   return header;
 }
 
+constexpr std::size_t kPiece = std::size_t{1} << 20U;
+constexpr std::size_t kBesidePiece = 1U << 10U;  // name, version, digest
+
 /// One after the other; none so large that reading it could not be interrupted.
 std::vector<MapSection> toMessages(const StateSection& section) {
-  constexpr std::size_t kPiece = std::size_t{1} << 20U;
   std::vector<MapSection> messages;
   for (std::size_t begin = 0; begin < section.bytes.size() || messages.empty(); begin += kPiece) {
     const std::string_view piece = std::string_view(section.bytes).substr(begin, kPiece);
@@ -146,9 +148,11 @@ class MapReader {
     map.landmarks = header.landmarks;
     map.has_same_parameters = header.config == parametersOf(config_.slam);
     map.state.source = path_;
+    map.state.most_memory = mostMemory(std::filesystem::file_size(path_));
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));
     std::uint64_t left = mostContent(std::filesystem::file_size(path_));
     for (const rosbag::MessageInstance& instance : view) {
+      require(instance.size() <= kPiece + kBesidePiece, "a piece of a section is larger than any there is");
       const auto section = instantiate<MapSection>(instance);
       require(digestOf(section->data) == section->digest,
               "damaged: the digest of section '" + section->name + "' is wrong");

@@ -132,6 +132,7 @@ constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 4,
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
 void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,
              const ClassTable& classes, SlamConfig& fitted, SlamParts& parts) {
+  std::size_t memory = state.most_memory;
   for (const Section& section : kSections) {
     const auto found = std::find_if(state.sections.begin(), state.sections.end(),
                                     [&](const StateSection& other) { return other.name == section.name; });
@@ -141,9 +142,10 @@ void restore(const SlamState& state, const KeepReading& keep_reading, const Slam
                        ", this program reads version " + std::to_string(section.version));
     }
     try {
-      StateArchive archive(found->bytes, keep_reading, classes.size());
+      StateArchive archive(found->bytes, keep_reading, classes.size(), memory);
       section.transfer(archive, fitted, parts);
       archive.requireEnd();
+      memory = archive.memoryLeft();
     } catch (const std::exception& error) {
       throw InputError(std::string("section '") + section.name + "': " + error.what());
     }

@@ -9,7 +9,7 @@ namespace semantic_mht_slam {
 FuzzTarget csvTarget() {
   const auto run = [classes = makeStreetClasses()](const std::string& bytes) {
     const FuzzedFile file(bytes);
-    readOrRefuse([&] { readObjects(file.path(), classes, 100); });
+    return readOrRefuse([&] { readObjects(file.path(), classes, 100); });
   };
   return {"csv",
           run,

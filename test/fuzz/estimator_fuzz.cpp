@@ -130,7 +130,10 @@ std::string driven(int frames, const std::string& calls) {
 }  // namespace
 
 FuzzTarget estimatorTarget() {
-  const auto run = [](const std::string& bytes) { FuzzedCalls(bytes).run(); };
+  const auto run = [](const std::string& bytes) {
+    FuzzedCalls(bytes).run();
+    return true;
+  };
   const std::string further = driven(30, "");
   return {"estimator",
           run,

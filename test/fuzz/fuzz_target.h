@@ -9,7 +9,7 @@ namespace semantic_mht_slam {
 /// What takes bytes that may come from anybody. One list for libFuzzer (driver/libfuzzer.cpp) and for fuzz_test.
 struct FuzzTarget {
   std::string name;
-  std::function<void(const std::string& bytes)> run;  ///< refuses or takes them; any exception is a finding
+  std::function<bool(const std::string& bytes)> run;  ///< true: took them, false: refused; an exception is a finding
   std::vector<std::string> seeds;                     ///< a small corpus of what is good
 };
 

@@ -26,12 +26,14 @@ class FuzzedFile {
   int file_;
 };
 
-/// Bytes may be refused; any other exception is a finding.
+/// Bytes may be refused, which gives false; any other exception is a finding.
 template <class Read>
-void readOrRefuse(const Read& read) {
+bool readOrRefuse(const Read& read) {
   try {
     read();
+    return true;
   } catch (const InputError&) {
+    return false;
   }
 }
 

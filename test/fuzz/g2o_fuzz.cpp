@@ -8,7 +8,7 @@ namespace semantic_mht_slam {
 FuzzTarget g2oTarget() {
   const auto run = [](const std::string& bytes) {
     const FuzzedFile file(bytes);
-    readOrRefuse([&] { formatG2o(readG2o(file.path())); });
+    return readOrRefuse([&] { formatG2o(readG2o(file.path())); });
   };
   return {"g2o",
           run,

@@ -36,13 +36,14 @@ struct Driven {
   }
 
   template <class Use>
-  void load(const std::string& bytes, const Use& use) const {
-    if (bytes.empty()) return;
+  bool load(const std::string& bytes, const Use& use) const {
+    if (bytes.empty()) return false;
     SlamState changed = state;
     changed.sections[static_cast<unsigned char>(bytes[0]) % changed.sections.size()].bytes = bytes.substr(1);
     std::unique_ptr<Slam> slam;
     readOrRefuse([&] { slam = std::make_unique<Slam>(config, classes, changed); });
     if (slam != nullptr) use(*slam);
+    return slam != nullptr;
   }
 };
 
@@ -50,7 +51,8 @@ struct Driven {
 
 FuzzTarget mapSectionTarget() {
   const auto driven = std::make_shared<Driven>(60);
-  return {"map_section", [driven](const std::string& bytes) { driven->load(bytes, [](Slam&) {}); }, driven->seeds()};
+  return {"map_section", [driven](const std::string& bytes) { return driven->load(bytes, [](Slam&) {}); },
+          driven->seeds()};
 }
 
 FuzzTarget mapStateTarget() {
@@ -62,7 +64,7 @@ FuzzTarget mapStateTarget() {
     landmarksOf(slam);
     slam.snapshot();
   };
-  return {"map_state", [driven, goOn](const std::string& bytes) { driven->load(bytes, goOn); }, driven->seeds()};
+  return {"map_state", [driven, goOn](const std::string& bytes) { return driven->load(bytes, goOn); }, driven->seeds()};
 }
 
 }  // namespace semantic_mht_slam

@@ -148,7 +148,10 @@ FuzzTarget messagesTarget() {
   const std::string drive(2, static_cast<char>(15 * 8 + 7));
   return {
       "messages",
-      [](const std::string& bytes) { FuzzedMessages(bytes).run(); },
+      [](const std::string& bytes) {
+        FuzzedMessages(bytes).run();
+        return true;
+      },
       {drive, drive + std::string("\x00\x64\x64\x64\x00\x00\x01\x6e", 8) + drive,
        drive + std::string("\x02\x64\x01\x06\x64\x64\x64\x00\x00\x01\x06\x64\x01\x01\x65\x65\x65\x60", 18) + drive}};
 }

@@ -36,7 +36,7 @@ FuzzTarget scanTarget() {
     const std::size_t scan_bytes = bytes.size() / 5 * 4;
     const FuzzedFile scan(bytes.substr(0, scan_bytes));
     const FuzzedFile label_file(bytes.substr(scan_bytes));
-    readOrRefuse(
+    return readOrRefuse(
         [&] { extractObjects(readLabelledScan(scan.path(), label_file.path()), labels, config).detections(); });
   };
   return {"scan", run, {goodScan()}};

@@ -9,10 +9,11 @@ namespace semantic_mht_slam {
 FuzzTarget trajectoryTarget() {
   const auto run = [](const std::string& bytes) {
     const FuzzedFile file(bytes);
-    readOrRefuse([&] { readKittiTrajectory(file.path()); });
-    readOrRefuse([&] { readTumTrajectory(file.path()); });
-    readOrRefuse([&] { readTimes(file.path()); });
-    readOrRefuse([&] { readCalibration(file.path()); });
+    bool is_taken = readOrRefuse([&] { readKittiTrajectory(file.path()); });
+    is_taken |= readOrRefuse([&] { readTumTrajectory(file.path()); });
+    is_taken |= readOrRefuse([&] { readTimes(file.path()); });
+    is_taken |= readOrRefuse([&] { readCalibration(file.path()); });
+    return is_taken;
   };
   return {"trajectory",
           run,

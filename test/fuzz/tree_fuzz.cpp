@@ -9,7 +9,7 @@ namespace semantic_mht_slam {
 FuzzTarget treeTarget() {
   const auto run = [](const std::string& bytes) {
     const FuzzedFile file(bytes);
-    readOrRefuse([&] { SubmapClassifier::load(file.path()).goodProb({1.0, 0.5, 20}); });
+    return readOrRefuse([&] { SubmapClassifier::load(file.path()).goodProb({1.0, 0.5, 20}); });
   };
   return {"tree", run, {readFile(SMHT_SOURCE_DIR "/config/submap_evaluator.yaml")}};
 }

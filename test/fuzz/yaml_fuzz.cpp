@@ -12,14 +12,15 @@ namespace semantic_mht_slam {
 FuzzTarget yamlTarget() {
   const auto run = [classes = makeStreetClasses()](const std::string& bytes) {
     const FuzzedFile file(bytes);
-    readOrRefuse([&] { readClassTable(file.path()); });
-    readOrRefuse([&] { readLabelMap(file.path(), classes); });
-    readOrRefuse([&] {
+    bool is_taken = readOrRefuse([&] { readClassTable(file.path()); });
+    is_taken |= readOrRefuse([&] { readLabelMap(file.path(), classes); });
+    is_taken |= readOrRefuse([&] {
       SlamConfig config;
       Fields fields;
       describe(config, fields);
       applySettings(readSettings(file.path()), fields);
     });
+    return is_taken;
   };
   return {"yaml",
           run,

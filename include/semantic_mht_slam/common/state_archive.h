@@ -37,13 +37,10 @@ class StateArchive {
   /// Writes.
   StateArchive() = default;
 
-  /// Reads; `bytes` must live as long as the archive.
-  explicit StateArchive(std::string_view bytes, KeepReading keep_reading = {}, int classes = kAnyClasses)
-      : is_reading_(true),
-        input_(bytes),
-        keep_reading_(std::move(keep_reading)),
-        classes_(classes),
-        matrix_entries_(kMatrixEntries + bytes.size()) {}
+  /// Reads; `bytes` must live as long as the archive. What is read takes no more than `memory` bytes.
+  explicit StateArchive(std::string_view bytes, KeepReading keep_reading = {}, int classes = kAnyClasses,
+                        std::size_t memory = kMostMemory)
+      : is_reading_(true), input_(bytes), keep_reading_(std::move(keep_reading)), classes_(classes), memory_(memory) {}
 
   bool isReading() const { return is_reading_; }
 
@@ -73,6 +70,8 @@ class StateArchive {
 
   /// Throws InputError unless everything was read.
   void requireEnd() const;
+  /// Bytes that what is read may still take.
+  std::size_t memoryLeft() const { return memory_; }
 
   /// Throws InputError: the bytes are no state of what is being read.
   [[noreturn]] static void fail(const std::string& what);
@@ -103,8 +102,15 @@ class StateArchive {
     }
   }
 
-  /// The number of elements that follow, each of at least one byte.
-  std::size_t count(std::size_t elements);
+  /// The number of elements that follow, each of at least one byte, which take so much memory.
+  std::size_t count(std::size_t elements, std::size_t element_size);
+
+  template <class Element>
+  std::size_t count(std::size_t elements) {
+    return count(elements, sizeof(Element));
+  }
+
+  static constexpr std::size_t kNode = 40;  ///< that a set or a map takes beside each element
 
   void transferText(std::string& text);
 
@@ -115,6 +121,7 @@ class StateArchive {
   struct HasTransfer<Value, std::void_t<decltype(std::declval<Value&>().transfer(std::declval<StateArchive&>()))>>
       : std::true_type {};
 
+  void takeMemory(std::size_t elements, std::size_t element_size);
   void number(double& value);
   std::uint64_t varint(std::uint64_t value);
   std::uint8_t byte(std::uint8_t value);
@@ -142,14 +149,13 @@ class StateArchive {
 
   static constexpr Eigen::Index kMaxSide = 4096;
   static constexpr int kAnyClasses = -1;
-  static constexpr std::size_t kMatrixEntries = 1000000;  // that need no bytes: a matrix of zeros is short
-
+  static constexpr std::size_t kMostMemory = std::size_t{1} << 30U;  // where nobody says less
   bool is_reading_ = false;
   std::string_view input_;
   KeepReading keep_reading_;
   std::string output_;
   int classes_ = kAnyClasses;
-  std::size_t matrix_entries_ = 0;  ///< that matrices of variable size may still have
+  std::size_t memory_ = kMostMemory;  ///< that is left: bytes may be much shorter than the values they stand for
 };
 
 void transfer(StateArchive& archive, std::string& text);
@@ -178,7 +184,7 @@ void transfer(StateArchive& archive, std::optional<Value>& value) {
 /// Elements one by one, so that a broken count cannot ask for more memory than there are bytes.
 template <class List>
 void transferList(StateArchive& archive, List& list) {
-  const std::size_t count = archive.count(list.size());
+  const std::size_t count = archive.count<typename List::value_type>(list.size());
   if (!archive.isReading()) {
     for (auto& value : list) archive(value);
     return;
@@ -201,14 +207,22 @@ void transfer(StateArchive& archive, std::vector<bool>& list);
 
 template <class Key>
 void transfer(StateArchive& archive, std::set<Key>& set) {
-  std::vector<Key> keys(set.begin(), set.end());
-  archive(keys);
-  if (archive.isReading()) set = std::set<Key>(keys.begin(), keys.end());
+  const std::size_t count = archive.count(set.size(), sizeof(Key) + StateArchive::kNode);
+  if (!archive.isReading()) {
+    for (Key key : set) archive(key);
+    return;
+  }
+  set.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    Key key{};
+    archive(key);
+    set.insert(key);
+  }
 }
 
 template <class Key, class Value>
 void transfer(StateArchive& archive, std::map<Key, Value>& map) {
-  const std::size_t count = archive.count(map.size());
+  const std::size_t count = archive.count(map.size(), sizeof(std::pair<const Key, Value>) + StateArchive::kNode);
   if (!archive.isReading()) {
     for (auto& [key, value] : map) {
       Key copy = key;
@@ -257,8 +271,7 @@ void StateArchive::resize(Matrix& values) {
   const bool is_possible = fits(rows, Matrix::RowsAtCompileTime, Matrix::MaxRowsAtCompileTime) &&
                            fits(cols, Matrix::ColsAtCompileTime, Matrix::MaxColsAtCompileTime);
   if (!is_possible) fail("a matrix has an impossible size");
-  if (static_cast<std::size_t>(rows * cols) > matrix_entries_) fail("its matrices are larger than it");
-  matrix_entries_ -= static_cast<std::size_t>(rows * cols);
+  takeMemory(static_cast<std::size_t>(rows * cols), sizeof(typename Matrix::Scalar));
   values.setZero(rows, cols);
 }
 

@@ -8,6 +8,9 @@ namespace semantic_mht_slam {
 /// What the content of a bag of that size may take in memory: compression does not make maps smaller by more.
 std::uint64_t mostContent(std::uint64_t file_size);
 
+/// What may be made in memory of a map in a file of that size.
+std::uint64_t mostMemory(std::uint64_t file_size);
+
 /// Throws InputError unless the records of a bag lie inside the file and no chunk of it claims to hold more than
 /// `mostContent`: rosbag takes the memory that a chunk claims.
 void requireModestBag(const std::string& path);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct StateSection {
 /// the pose graph.
 struct SlamState {
   std::vector<StateSection> sections;
-  std::string source;  ///< the file that it was read from, for messages; empty: none
+  std::string source;                               ///< the file that it was read from, for messages; empty: none
+  std::size_t most_memory = std::size_t{1} << 30U;  ///< bytes that what is made of it may take; less for a small file
 };
 
 }  // namespace semantic_mht_slam
