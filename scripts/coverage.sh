@@ -10,10 +10,15 @@ MODULES=(common models io simulation map registration mapping place graph percep
 
 failed=0
 "$REPOSITORY/scripts/sanitize.sh" address "${MODULES[@]}" || failed=1
-profiles=("${MODULES[@]/#/$INSTRUMENTED/profiles/}")
-llvm-profdata merge -sparse -o "$INSTRUMENTED/coverage.profdata" "${profiles[@]/%/.profraw}"
-programs=("${MODULES[@]/#/-object=$INSTRUMENTED/}")
-llvm-cov export -summary-only -instr-profile="$INSTRUMENTED/coverage.profdata" "${programs[@]/%/_test}" \
+profiles=()
+programs=()
+for module in "${MODULES[@]}"; do
+  profiles+=("$INSTRUMENTED/profiles/$module"-*.profraw)
+  programs+=("-object=$INSTRUMENTED/${module}_test")
+done
+for library in "$INSTRUMENTED"/libcounted_*.so; do programs+=("-object=$library"); done
+llvm-profdata merge -sparse -o "$INSTRUMENTED/coverage.profdata" "${profiles[@]}"
+llvm-cov export -summary-only -instr-profile="$INSTRUMENTED/coverage.profdata" "${programs[@]}" \
   >"$INSTRUMENTED/coverage.json"
 /usr/bin/python3 - "$INSTRUMENTED" "$REPOSITORY" "$minimum" "${MODULES[@]}" <<'PYTHON' || failed=1
 import json, sys

@@ -28,7 +28,8 @@ address() {
   for name in "${tests[@]}"; do
     instrumented_build "${name}_test" || { echo "sanitize: ${name}_test cannot be built" >&2; failed=1; continue; }
     log="$INSTRUMENTED/$name.log"
-    LLVM_PROFILE_FILE="$INSTRUMENTED/profiles/$name.profraw" "$INSTRUMENTED/${name}_test" >"$log" 2>&1
+    rm -f "$INSTRUMENTED/profiles/$name"-*
+    LLVM_PROFILE_FILE="$INSTRUMENTED/profiles/$name-%m.profraw" "$INSTRUMENTED/${name}_test" >"$log" 2>&1
     report "$name" $? "$log"
   done
 }

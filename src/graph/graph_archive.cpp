@@ -46,8 +46,8 @@ void requireIndex(int index, std::size_t size) {
 
 /// Nodes know the landmarks and loop closures that name them, and no others.
 void requireReferences(const StateArchive& archive, const GraphState& graph) {
-  for (const auto& [number, kept] : graph.group_of) {
-    archive.require(kept <= number && graph.keptNumber(kept) == kept, "a landmark that is kept as another in a circle");
+  for (const auto& [number, kept] : graph.group_of) {  // by the lowest number of each group
+    archive.require(kept <= number, "landmarks that are kept as each other, in a circle");
   }
   std::vector<std::set<std::int64_t>> landmarks(graph.nodes.size());
   for (const auto& [number, landmark] : graph.landmarks) {

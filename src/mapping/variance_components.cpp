@@ -55,9 +55,10 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
   // What a unit of each coefficient adds to V^-1 y, and what they are known by.
   const Eigen::Index effects = stretch.effect.cols();
   const Eigen::Index nuisances = stretch.coupling.cols();
+  const Eigen::MatrixXd solved = nuisances > 0 ? factor.solve(stretch.coupling).eval() : stretch.coupling;
   Eigen::MatrixXd response(H.rows(), effects + nuisances);
   response.leftCols(effects) = V_inverse * stretch.effect;
-  response.rightCols(nuisances) = stretch.coupling - H * factor.solve(stretch.coupling);
+  response.rightCols(nuisances) = stretch.coupling - H * solved;
   const Eigen::VectorXd u = V_inverse_y - response * effect_;
   const Eigen::MatrixXd parts = stretch.design * log_variance_.array().exp().matrix().asDiagonal();
   const Eigen::VectorXd most = kMostDeviations * kMostDeviations * V_inverse.diagonal().cwiseMax(0.0);
@@ -68,7 +69,7 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
   score.effect_information.bottomLeftCorner(nuisances, effects) =
       score.effect_information.topRightCorner(effects, nuisances).transpose();
   score.effect_information.bottomRightCorner(nuisances, nuisances) =
-      stretch.nuisance_matrix - stretch.coupling.transpose() * factor.solve(stretch.coupling);
+      stretch.nuisance_matrix - stretch.coupling.transpose() * solved;
   score.effect_vector.resize(effects + nuisances);
   score.effect_vector.head(effects) = stretch.effect.transpose() * V_inverse_y;
   score.effect_vector.tail(nuisances) =
