@@ -3,6 +3,14 @@
 #include <fstream>
 #include <string>
 
+#ifdef __SANITIZE_ADDRESS__
+#define SMHT_KEEPS_WHAT_WAS_FREED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SMHT_KEEPS_WHAT_WAS_FREED
+#endif
+#endif
+
 namespace semantic_mht_slam {
 
 /// Resident memory of this process, and the most of it since the last `begin`, by the kernel's count.
@@ -10,7 +18,7 @@ class PeakMemory {
  public:
   /// False if the system does not let one begin again, or a sanitizer keeps what was freed.
   bool begin() {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef SMHT_KEEPS_WHAT_WAS_FREED
     return false;
 #endif
     std::ofstream peak("/proc/self/clear_refs");
