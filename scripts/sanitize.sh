@@ -13,7 +13,7 @@ failed=0
 
 # report NAME CODE LOG
 report() {
-  if [ "$2" -eq 0 ] && ! grep -qE "WARNING: ThreadSanitizer|ERROR: AddressSanitizer|runtime error:" "$3"; then
+  if [ "$2" -eq 0 ] && ! grep -qE "ERROR: AddressSanitizer|runtime error:" "$3"; then
     echo "sanitize: $1 is clean"
   else
     echo "sanitize: $1: see $3" >&2
@@ -36,7 +36,7 @@ address() {
 
 thread() {
   local workspace="$REPOSITORY/build/thread"
-  export TSAN_OPTIONS="suppressions=$REPOSITORY/test/support/tsan_suppressions.txt exitcode=66"
+  local options="suppressions=$REPOSITORY/test/support/tsan_suppressions.txt exitcode=0"
   [ "${#tests[@]}" -gt 0 ] || tests=(service_calls map_services node_faults)
   mkdir -p "$workspace"
   cmake -S "$REPOSITORY" -B "$workspace/build" -DCMAKE_BUILD_TYPE=None -DCATKIN_ENABLE_TESTING=ON \
@@ -48,9 +48,15 @@ thread() {
     log="$workspace/$name.log"
     cmake --build "$workspace/build" --target "${name}_rostest" -- -j"$(nproc)" >"$log" 2>&1 ||
       { echo "sanitize: ${name}_rostest cannot be built ($log)" >&2; failed=1; continue; }
+    rm -rf "$workspace/reports/$name"
+    mkdir -p "$workspace/reports/$name"
     # shellcheck disable=SC1091
-    (set +u; source "$workspace/devel/setup.bash" && rostest --text "$REPOSITORY/test/ros/$name.test") >"$log" 2>&1
-    report "$name" $? "$log"
+    (set +u; source "$workspace/devel/setup.bash"
+      export TSAN_OPTIONS="$options log_path=$workspace/reports/$name/tsan"
+      rostest --text "$REPOSITORY/test/ros/$name.test") >"$log" 2>&1
+    code=$?
+    "$REPOSITORY/scripts/tsan_reports.py" "$workspace/reports/$name"/tsan.* >>"$log" || code=1
+    report "$name" "$code" "$log"
   done
 }
 

@@ -72,7 +72,7 @@ class HostileMapFileTest : public testing::Test {
   static SavedMap* good_;
   TemporaryFolder folder_;
   const std::string path_ = folder_ / "map.bag";
-  const SystemConfig config_;
+  const SystemConfig config_{};
   const ClassTable classes_ = makeStreetClasses();
 };
 
