@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # Line coverage of the core, which is all modules below ros, by its gtests as scripts/sanitize.sh address runs them.
-#   scripts/coverage.sh [MINIMUM]     percent, default 90; a table by file in build/instrumented/coverage.txt
+#   scripts/coverage.sh [MINIMUM [MODULE...]]     percent, default 90; these modules alone, by their own gtests
+# The table by file is in build/instrumented/coverage.txt.
 # Ends with code 1 if it is less, or a test fails. Prints the ten files with the lowest coverage.
 set -euo pipefail
 # shellcheck source=scripts/instrumented.sh
 source "$(dirname "${BASH_SOURCE[0]}")/instrumented.sh"
 minimum=${1:-90}
-MODULES=(common models io simulation map registration mapping place graph perception slam merging evaluation app)
+MODULES=("${@:2}")
+[ "${#MODULES[@]}" -gt 0 ] ||
+  MODULES=(common models io simulation map registration mapping place graph perception slam merging evaluation app)
 
 failed=0
 "$REPOSITORY/scripts/sanitize.sh" address "${MODULES[@]}" || failed=1

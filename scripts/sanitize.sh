@@ -37,6 +37,7 @@ address() {
 thread() {
   local workspace="$REPOSITORY/build/thread"
   local options="suppressions=$REPOSITORY/test/support/tsan_suppressions.txt exitcode=0"
+  export OMP_NUM_THREADS=1  # of the solver's libraries, whose threads wait for each other by spinning
   [ "${#tests[@]}" -gt 0 ] || tests=(service_calls map_services node_faults)
   mkdir -p "$workspace"
   cmake -S "$REPOSITORY" -B "$workspace/build" -DCMAKE_BUILD_TYPE=None -DCATKIN_ENABLE_TESTING=ON \
