@@ -24,12 +24,12 @@ llvm-profdata merge -sparse -o "$INSTRUMENTED/coverage.profdata" "${profiles[@]}
 llvm-cov export -summary-only -instr-profile="$INSTRUMENTED/coverage.profdata" "${programs[@]}" \
   >"$INSTRUMENTED/coverage.json"
 /usr/bin/python3 - "$INSTRUMENTED" "$REPOSITORY" "$minimum" "${MODULES[@]}" <<'PYTHON' || failed=1
-import json, sys
+import json, os, sys
 from pathlib import Path
 folder, repository, minimum, modules = Path(sys.argv[1]), sys.argv[2], float(sys.argv[3]), set(sys.argv[4:])
 rows = []
 for file in json.loads((folder / "coverage.json").read_text())["data"][0]["files"]:
-    name = str(file["filename"]).removeprefix(repository + "/")
+    name = os.path.normpath(os.path.join(folder, file["filename"])).removeprefix(repository + "/")
     parts = name.split("/")
     module = parts[1] if parts[0] == "src" else parts[2] if parts[0] == "include" else ""
     lines = file["summary"]["lines"]
