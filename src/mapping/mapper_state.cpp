@@ -175,8 +175,12 @@ void ErrorInformation::transfer(StateArchive& archive) {
       nuisance_matrix.cols() != nuisances) {
     StateArchive::fail("errors of the odometry whose sizes do not fit");
   }
-  archive.require(size <= kMostErrors && isNotNegative(matrix) && (design.array() >= 0.0).all(),
+  archive.require(size <= kMostErrors && nuisances <= kMostErrors && (design.array() >= 0.0).all(),
                   "errors of the odometry that are none");
+  if (!archive.isReading()) return;
+  Eigen::MatrixXd all(size + nuisances, size + nuisances);
+  all << matrix, coupling, coupling.transpose(), nuisance_matrix;
+  archive.require(isNotNegative(all), "errors of the odometry whose information is negative");
 }
 
 void VarianceComponents::transfer(StateArchive& archive) {
