@@ -10,6 +10,8 @@
 
 #include <locale.h>
 
+#include "decimal.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -51,6 +53,7 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 std::optional<double> parseDouble(std::string_view text) {
   char buffer[64];
   if (text.empty() || text.size() >= sizeof buffer || isBlank(text.front())) return std::nullopt;
+  if (const std::optional<double> value = parseShortDecimal(text)) return value;
   std::copy(text.begin(), text.end(), buffer);
   buffer[text.size()] = '\0';
   char* end = nullptr;
@@ -68,6 +71,7 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
 }
 
 std::string formatDouble(double value) {
+  if (const std::optional<Decimal> decimal = shortestDecimal(value)) return toText(*decimal);
   for (int digits = 15; digits < 17; ++digits) {
     std::string text = printNumber("%.*g", digits, value);
     if (parseDouble(text) == value) return text;

@@ -2,7 +2,11 @@
 
 #include <clocale>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +33,39 @@ TEST(TextTest, FormattedNumbersReadBackTheSame) {
   EXPECT_EQ(formatDouble(30.0), "30");
   EXPECT_EQ(parseDouble(formatDouble(std::numeric_limits<double>::denorm_min())),
             std::numeric_limits<double>::denorm_min());
+}
+
+/// With as few of 15 to 17 digits as read back the same, by the C library.
+std::string printed(double value) {
+  char buffer[64];
+  for (int digits = 15; digits <= 17; ++digits) {
+    std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
+    if (std::strtod(buffer, nullptr) == value) break;
+  }
+  return buffer;
+}
+
+TEST(TextTest, NumbersAreWrittenAndReadAsTheCLibraryDoes) {
+  Rng rng(2);
+  std::vector<double> values = {1.0,  -1.0,  0.5, 1e-4, 1e-5, 1e15, 1e16, 999999999999999.9, 9007199254740993.0,
+                                1e22, 5e-324};
+  for (int i = 0; i < 20000; ++i) {
+    values.push_back(rng.normal() * std::pow(10.0, rng.uniform(-20.0, 20.0)));      // of any size
+    values.push_back(std::round(1e3 * rng.normal(0.0, 100.0)) / 1e3);               // of few digits
+    values.push_back(std::ldexp(std::round(rng.uniform(1.0, 8.0)), i % 100 - 50));  // of few bits
+    values.push_back(static_cast<float>(rng.normal()));
+  }
+  for (const double value : values) {
+    const std::string text = printed(value);
+    ASSERT_EQ(formatDouble(value), text);
+    ASSERT_EQ(parseDouble(text), std::strtod(text.c_str(), nullptr)) << text;
+  }
+  for (const char* text :
+       {"5.", ".5", "+5", "-.5e3", "1E+2", "1e23", "0.1234567890123456789", "123456789012345678901", "0x10"}) {
+    EXPECT_EQ(parseDouble(text), std::strtod(text, nullptr)) << text;
+  }
+  EXPECT_TRUE(std::signbit(parseDouble("-0").value()));
+  for (const char* text : {".", "1e", "e5", "+-1", "1e+", "1.5.", "1e1.5"}) EXPECT_FALSE(parseDouble(text)) << text;
 }
 
 TEST(TextTest, FixedNumbersHaveNoNegativeZero) {
