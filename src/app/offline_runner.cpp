@@ -29,6 +29,22 @@ bool isDue(const DetectorFrame& frame, std::size_t i, const Recording& recording
   return frame.stamp <= recording.odometry[i].stamp;
 }
 
+/// What was kept of the drive of a run, at every sample that was used: one of a long stand-still that was not kept is
+/// where the next one is. `known` were kept before.
+void noteTrajectory(const Slam& slam, const MapUncertainty& uncertainty, const std::vector<StampedPose>& known,
+                    RunResult& result) {
+  result.whole_trajectory = trajectoryOf(slam);
+  const std::vector<FixedAxesCov> cov = trajectoryCovOf(slam, uncertainty);
+  std::size_t i = known.size();
+  const bool stood_on = i > 0 && result.whole_trajectory[i - 1].stamp != known.back().stamp;
+  if (stood_on) --i;
+  for (const StampedPose& sample : result.online_trajectory) {
+    result.trajectory.push_back({sample.stamp, result.whole_trajectory[i].T_world_base});
+    result.trajectory_cov.push_back(cov[i]);
+    if (sample.stamp == result.whole_trajectory[i].stamp) ++i;
+  }
+}
+
 /// Throws InputError with the causes if nothing of the recording could be used.
 void requireUsed(const Recording& recording, const RunResult& result, Method method) {
   const InputCounters& counters = result.counters;
@@ -48,7 +64,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
                      const ProgressCallback& progress, const SlamState* start) {
   RunResult result;
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
-  const std::size_t known = trajectoryOf(slam).size();
+  const std::vector<StampedPose> known = trajectoryOf(slam);
   const InputCounters counted = slam.parts().assembler.counters();
   const bool is_another_drive = start != nullptr && slam.parts().sessions.latestOdometry() &&
                                 !recording.odometry.empty() && !goesOn(slam, recording.odometry.front());
@@ -76,11 +92,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   slam.finish();
   const MapUncertainty uncertainty = uncertaintyOf(slam);
   result.seconds = watch.elapsed_s();
-  result.whole_trajectory = trajectoryOf(slam);
-  result.trajectory.assign(result.whole_trajectory.begin() + static_cast<std::ptrdiff_t>(known),
-                           result.whole_trajectory.end());
-  const std::vector<FixedAxesCov> whole_cov = trajectoryCovOf(slam, uncertainty);
-  result.trajectory_cov.assign(whole_cov.begin() + static_cast<std::ptrdiff_t>(known), whole_cov.end());
+  noteTrajectory(slam, uncertainty, known, result);
   result.state = slam.snapshot();
   result.sessions = slam.parts().sessions.summary(slam.map());
   result.detector_range_m = slam.parts().range_factor * Length::kReferenceRange_m;

@@ -7,6 +7,12 @@
 
 namespace semantic_mht_slam {
 
+void Sessions::add(const StampedPose& T_odom_base, bool is_standing) {
+  const bool has_begun = odometry_.size() > sessions_.back().first_odometry + 1;
+  if (is_standing && has_begun) odometry_.pop_back();
+  odometry_.push_back(T_odom_base);
+}
+
 void Sessions::begin(KeyframeId next) {
   sessions_.push_back({odometry_.size(), next, {}});
 }

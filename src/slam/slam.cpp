@@ -80,7 +80,9 @@ bool Slam::addOdometry(const StampedPose& T_odom_base) {
   if (!parts_.assembler.addOdometry(T_odom_base)) return false;
   parts_.continuity.add(T_odom_base);
   reckon(T_odom_base, parts_);
-  parts_.sessions.add(T_odom_base);
+  const bool is_standing =
+      last && parts_.standing.holds(last->T_world_base) && parts_.standing.holds(T_odom_base.T_world_base);
+  parts_.sessions.add(T_odom_base, is_standing);
   processReadyFrames();
   return true;
 }

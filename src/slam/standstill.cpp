@@ -5,17 +5,18 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kFrames = 300;  // that are looked at
 constexpr double kMoved_m = 0.05;
 constexpr double kMoved_rad = 0.01;
 
 }  // namespace
 
+bool Standstill::hasMoved(const Pose& T_odom_base) const {
+  return !T_odom_stand_ || (T_odom_base.translation_m - T_odom_stand_->translation_m).norm() > kMoved_m ||
+         angularDistance(T_odom_base.rotation, T_odom_stand_->rotation) > kMoved_rad;
+}
+
 bool Standstill::add(const Pose& T_odom_base) {
-  const bool has_moved = !T_odom_stand_ ||
-                         (T_odom_base.translation_m - T_odom_stand_->translation_m).norm() > kMoved_m ||
-                         angularDistance(T_odom_base.rotation, T_odom_stand_->rotation) > kMoved_rad;
-  if (has_moved) {
+  if (hasMoved(T_odom_base)) {
     T_odom_stand_ = T_odom_base;
     frames_ = 0;
   }

@@ -45,6 +45,29 @@ TEST(OfflineRunnerTest, EveryFrameAndDetectionGoesThroughOnce) {
   EXPECT_EQ(result.counters.detections, detections);
 }
 
+TEST(OfflineRunnerTest, ALongStandstillHasItsRowsThoughTheMapDoesNotKeepThem) {
+  Recording recording = makeCircleRecording(41);
+  const DetectorFrame seen = recording.detector_frames.back();
+  const StampedPose stand = recording.odometry.back();
+  for (int i = 1; i <= 500; ++i) {
+    recording.odometry.push_back({stand.stamp + i * 100000000LL, stand.T_world_base});
+    recording.detector_frames.push_back(seen);
+    recording.detector_frames.back().stamp = recording.odometry.back().stamp;
+  }
+  const RunResult result = runOffline(recording, SlamConfig{}, makeTwoClasses(), [](std::size_t, std::size_t) {});
+  ASSERT_EQ(result.trajectory.size(), 541U);
+  EXPECT_EQ(result.trajectory_cov.size(), 541U);
+  EXPECT_EQ(result.online_trajectory.size(), 541U);
+  EXPECT_LT(result.whole_trajectory.size(), 345U);
+  for (std::size_t i = 0; i < 541; ++i) {
+    ASSERT_EQ(result.trajectory[i].stamp, recording.odometry[i].stamp);
+    if (i < 41) continue;
+    EXPECT_LT(
+        (result.trajectory[i].T_world_base.translation_m - result.trajectory[40].T_world_base.translation_m).norm(),
+        1e-6);
+  }
+}
+
 TEST(OfflineRunnerTest, ARecordingWithoutUsableOdometryIsRefused) {
   Recording recording = makeCircleRecording(3);
   for (StampedPose& pose : recording.odometry) pose.T_world_base.translation_m.x() = std::nan("");

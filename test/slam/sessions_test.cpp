@@ -51,6 +51,8 @@ TEST_P(SessionsTest, StandingIsNotMapped) {
     slam_.addDetections(stamp - 30000000, drive_.detectionsAt(39));
   }
   EXPECT_GT(slam_.parts().assembler.counters().frames_standing, 600U);
+  EXPECT_LT(slam_.parts().sessions.odometry().size(), 350U) << "beginning and end of the stand-still";
+  EXPECT_EQ(trajectoryOf(slam_).back().stamp, SquareDrive::stampAt(39) + 100000000000LL);
   feed(40, 100, Pose::identity(), 101000000000);
   EXPECT_EQ(slam_.parts().sessions.summary(slam_.map()).size(), 1U);
   slam_.finish();

@@ -32,6 +32,18 @@ TEST(StandstillTest, DrivingOnIsLookedAtAgain) {
   EXPECT_FALSE(standstill.add({Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0}}));
 }
 
+TEST(StandstillTest, APoseSaysNothingNewAfterManyFramesFromThere) {
+  Standstill standstill;
+  const Pose further(Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0});
+  for (int i = 0; i < 299; ++i) standstill.add(Pose::identity());
+  EXPECT_FALSE(standstill.holds(Pose::identity()));
+  standstill.add(Pose::identity());
+  EXPECT_TRUE(standstill.holds(Pose::identity()));
+  EXPECT_FALSE(standstill.holds(further));
+  standstill.add(further);
+  EXPECT_FALSE(standstill.holds(further));
+}
+
 TEST(StandstillTest, JitterIsNoMotion) {
   Rng rng(1);
   Standstill standstill;

@@ -24,8 +24,9 @@ struct SessionSummary {
 /// of one odometry.
 class Sessions {
  public:
-  /// A sample T_odom_base of the present session.
-  void add(const StampedPose& T_odom_base) { odometry_.push_back(T_odom_base); }
+  /// A sample T_odom_base of the present session. One that only says that the vehicle still stands where the newest
+  /// ones have it takes the place of the newest.
+  void add(const StampedPose& T_odom_base, bool is_standing = false);
 
   /// Another odometry begins; `next` is the keyframe that the map gets next.
   void begin(KeyframeId next);
@@ -44,7 +45,7 @@ class Sessions {
   /// The newest fix of the present session; null without any.
   const MapFix* latestFix() const;
 
-  /// The samples of all sessions.
+  /// The samples of all sessions; of a long stand-still the beginning and the end.
   const std::vector<StampedPose>& odometry() const { return odometry_; }
 
   /// The samples of the present session behind a stamp.

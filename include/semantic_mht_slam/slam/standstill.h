@@ -14,10 +14,17 @@ class Standstill {
   /// Takes the next frame; true if it need not be looked at.
   bool add(const Pose& T_odom_base);
 
+  /// Whether it stands there so long that a pose, too, says nothing new.
+  bool holds(const Pose& T_odom_base) const { return frames_ >= kFrames && !hasMoved(T_odom_base); }
+
   /// All that it knows (see `StateArchive`).
   void transfer(StateArchive& archive);
 
  private:
+  static constexpr int kFrames = 300;  // that are looked at
+
+  bool hasMoved(const Pose& T_odom_base) const;
+
   std::optional<Pose> T_odom_stand_;  ///< where it stands, or was at its newest motion
   int frames_ = 0;
 };
