@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 namespace semantic_mht_slam {
@@ -170,16 +171,28 @@ void Map::forEachLandmarkOf(SubmapId submap,
 }
 
 std::vector<DetectionAssociation> Map::associations() const {
+  struct Known {
+    LandmarkId landmark;
+    double existence_prob;
+    bool is_kept;
+  };
+  std::unordered_map<LandmarkId, Known> known_by;  // name
+  const auto known = [&](LandmarkId name) -> const Known& {
+    const auto [entry, is_new] = known_by.try_emplace(name);
+    if (is_new) {
+      const LandmarkId landmark = identity_.landmarkOf(name);
+      entry->second = {landmark, existenceOf(landmark), isKept(landmark)};
+    }
+    return entry->second;
+  };
   std::vector<DetectionAssociation> result;
   for (const auto& submap : submaps_) {
     for (DetectionAssociation association : submap->associations) {
       if (association.landmark != kNoLandmark) {
-        association.landmark = identity_.landmarkOf(association.landmark);
-        association.probability *= existenceOf(association.landmark);
-        if (!isKept(association.landmark)) {
-          association.landmark = kNoLandmark;
-          association.probability = 1.0 - association.probability;
-        }
+        const auto& [landmark, existence_prob, is_kept] = known(association.landmark);
+        association.probability *= existence_prob;
+        if (!is_kept) association.probability = 1.0 - association.probability;
+        association.landmark = is_kept ? landmark : kNoLandmark;
       }
       result.push_back(association);
     }

@@ -54,6 +54,9 @@ AssociationModel::AssociationModel(const MapperConfig& config, const ClassTable&
       log_inlier_prob_(std::log1p(-config.association.outlier_prob)),
       log_outlier_prob_(std::log(config.association.outlier_prob)),
       gate_mahalanobis_sq_(chiSquare3Quantile(config.association.gate_prob)) {
+  for (int count = 0; count <= config_.association.count_prior_cap; ++count) {
+    log_count_.push_back(std::log(static_cast<double>(count)));
+  }
   if (class_count_ > kMaxClasses) throw std::invalid_argument("more classes than a landmark can hold");
   for (const ClassInfo& info : classes.all()) {
     log_class_prior_.push_back(config_.semantics ? std::log(info.prior_prob) : 0.0);
@@ -89,7 +92,7 @@ double AssociationModel::logCountPrior(int observations) const {
     case CountPrior::kNone:
       return 0.0;
     case CountPrior::kLinear:
-      return std::log(static_cast<double>(count));
+      return log_count_[static_cast<std::size_t>(count)];
     case CountPrior::kExponential:
       return static_cast<double>(count);
   }

@@ -20,38 +20,64 @@ bool isOnlySighting(const HypothesisLandmark& landmark) {
   return landmark->observations < 2;
 }
 
+/// Measurements that compete for a landmark; all other landmarks are free.
+std::vector<std::size_t> competing(const std::vector<std::vector<AssociationOdds>>& odds,
+                                   const std::vector<int>& claims) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < odds.size(); ++i) {
+    const bool competes = std::any_of(odds[i].begin(), odds[i].end(), [&](const AssociationOdds& claim) {
+      return claims[static_cast<std::size_t>(claim.landmark)] > 1;
+    });
+    if (competes) rows.push_back(i);
+  }
+  return rows;
+}
+
+/// Passes messages until they stay.
+void findFreedom(const std::vector<std::vector<AssociationOdds>>& odds, int landmarks,
+                 std::vector<std::vector<double>>& free) {
+  std::vector<int> claims(static_cast<std::size_t>(landmarks), 0);
+  for (const auto& row : odds) {
+    for (const AssociationOdds& claim : row) ++claims[static_cast<std::size_t>(claim.landmark)];
+  }
+  struct Message {
+    std::size_t landmark;
+    double* free;
+    double asked;  ///< how much the measurement asks for the landmark
+  };
+  const std::vector<std::size_t> rows = competing(odds, claims);
+  std::vector<double> asked_of(claims.size());
+  std::vector<Message> messages;
+  double change = rows.empty() ? 0.0 : 1.0;
+  for (int iteration = 0; iteration < kIterations && change > kConverged; ++iteration) {
+    messages.clear();
+    for (const std::size_t i : rows) {
+      double all = 1.0;
+      for (std::size_t c = 0; c < odds[i].size(); ++c) all += odds[i][c].sole * free[i][c] + odds[i][c].part;
+      for (std::size_t c = 0; c < odds[i].size(); ++c) {
+        const auto landmark = static_cast<std::size_t>(odds[i][c].landmark);
+        if (claims[landmark] < 2) continue;
+        messages.push_back({landmark, &free[i][c], odds[i][c].sole / (all - odds[i][c].sole * free[i][c])});
+      }
+    }
+    for (const Message& message : messages) asked_of[message.landmark] = 0.0;
+    for (const Message& message : messages) asked_of[message.landmark] += message.asked;
+    change = 0.0;
+    for (const Message& message : messages) {
+      const double now = 1.0 / (1.0 + std::max(0.0, asked_of[message.landmark] - message.asked));
+      change = std::max(change, std::abs(now - *message.free));
+      *message.free = now;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> associationMarginals(const std::vector<std::vector<AssociationOdds>>& odds,
                                                       int landmarks) {
-  std::vector<std::vector<double>> free;   // messages: how free the landmark is for the measurement
-  std::vector<std::vector<double>> asked;  // how much the measurement asks for the landmark
-  for (const auto& row : odds) {
-    free.emplace_back(row.size(), 1.0);
-    asked.emplace_back(row.size(), 0.0);
-  }
-  std::vector<double> asked_of(static_cast<std::size_t>(landmarks));
-  double change = 1.0;
-  for (int iteration = 0; iteration < kIterations && change > kConverged; ++iteration) {
-    std::fill(asked_of.begin(), asked_of.end(), 0.0);
-    for (std::size_t i = 0; i < odds.size(); ++i) {
-      double all = 1.0;
-      for (std::size_t c = 0; c < odds[i].size(); ++c) all += odds[i][c].sole * free[i][c] + odds[i][c].part;
-      for (std::size_t c = 0; c < odds[i].size(); ++c) {
-        asked[i][c] = odds[i][c].sole / (all - odds[i][c].sole * free[i][c]);
-        asked_of[static_cast<std::size_t>(odds[i][c].landmark)] += asked[i][c];
-      }
-    }
-    change = 0.0;
-    for (std::size_t i = 0; i < odds.size(); ++i) {
-      for (std::size_t c = 0; c < odds[i].size(); ++c) {
-        const double others = asked_of[static_cast<std::size_t>(odds[i][c].landmark)] - asked[i][c];
-        const double now = 1.0 / (1.0 + std::max(0.0, others));
-        change = std::max(change, std::abs(now - free[i][c]));
-        free[i][c] = now;
-      }
-    }
-  }
+  std::vector<std::vector<double>> free;  // messages: how free the landmark is for the measurement
+  for (const auto& row : odds) free.emplace_back(row.size(), 1.0);
+  findFreedom(odds, landmarks, free);
   std::vector<std::vector<double>> marginals = free;
   for (std::size_t i = 0; i < odds.size(); ++i) {
     double all = 1.0;
@@ -117,8 +143,9 @@ std::vector<JudgedAssociation> AssociationPosterior::judge(const std::vector<Mea
                                                            double driven_m, const std::vector<LandmarkId>& assigned) {
   model_.findCandidates(map_, measurements, driven_m, problem_);
   std::vector<std::vector<AssociationOdds>> odds;
+  odds.reserve(measurements.size());
   for (std::size_t i = 0; i < measurements.size(); ++i) {
-    odds.emplace_back();
+    odds.emplace_back().reserve(problem_.gated[i].size() + 1);
     const HypothesisLandmark* own = assigned[i] == kNoLandmark ? nullptr : findLandmark(assigned[i], map_.landmarks);
     bool is_gated = false;
     for (const Candidate& candidate : problem_.gated[i]) {
@@ -132,6 +159,7 @@ std::vector<JudgedAssociation> AssociationPosterior::judge(const std::vector<Mea
   }
   const auto marginals = associationMarginals(odds, static_cast<int>(map_.landmarks.size()));
   std::vector<JudgedAssociation> result;
+  result.reserve(measurements.size());
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     JudgedAssociation judged{0.0, 1.0};
     for (std::size_t c = 0; c < odds[i].size(); ++c) {

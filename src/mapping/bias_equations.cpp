@@ -24,12 +24,17 @@ constexpr double kLeastVariance = 1e-10;
 struct Row {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
   std::array<int, kEntries> index{};
+  std::array<int, kEntries> place{};  ///< of the unknowns among those of the landmark
   Eigen::Matrix<double, 3, kEntries> J = Eigen::Matrix<double, 3, kEntries>::Zero();
   Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
   double weight = 1.0;
 };
 
-using LandmarkRows = std::vector<std::vector<Row>>;
+/// All that show one landmark.
+struct LandmarkRows {
+  std::vector<Row> rows;
+  std::vector<int> unknowns;  ///< by rising index, without the many that the landmark has nothing to do with
+};
 
 /// Equations in unknowns x: the coefficients first, then scale, direction and slope of this stretch, then the error of
 /// each keyframe's pose. Of matrices, which are symmetric, only the lower triangle is filled.
@@ -51,7 +56,7 @@ class StretchEquations {
     const Eigen::LLT<Eigen::MatrixXd> factor(all.matrix);
     if (factor.info() != Eigen::Success) return false;
     const Eigen::VectorXd x = factor.solve(all.vector);
-    for (std::vector<Row>& rows : landmarks_) reweigh(rows, x);
+    for (LandmarkRows& landmark : landmarks_) reweigh(landmark.rows, x);
     return true;
   }
 
@@ -70,9 +75,9 @@ class StretchEquations {
     for (const auto& [id, observations] : by_landmark) {
       if (static_cast<int>(observations.size()) < noise_.min_observations) continue;
       const Eigen::Vector3d landmark_m = medianPosition(observations);
-      landmarks_.emplace_back();
-      for (const BiasObservation* observation : observations)
-        landmarks_.back().push_back(row(*observation, landmark_m));
+      std::vector<Row>& rows = landmarks_.emplace_back().rows;
+      for (const BiasObservation* observation : observations) rows.push_back(row(*observation, landmark_m));
+      noteUnknowns(landmarks_.back());
     }
   }
 
@@ -119,27 +124,29 @@ class StretchEquations {
 
   BiasInformation normalEquations() const {
     BiasInformation all{Eigen::MatrixXd::Zero(size_, size_), Eigen::VectorXd::Zero(size_)};
-    for (const std::vector<Row>& rows : landmarks_) addLandmark(rows, all);
+    for (const LandmarkRows& landmark : landmarks_) addLandmark(landmark, all);
     addMotion(all);
     return all;
   }
 
-  /// By rising index.
-  static std::vector<int> unknownsOf(const std::vector<Row>& rows) {
-    std::vector<int> unknowns;
-    for (const Row& row : rows) unknowns.insert(unknowns.end(), row.index.begin(), row.index.end());
+  static void noteUnknowns(LandmarkRows& landmark) {
+    std::vector<int>& unknowns = landmark.unknowns;
+    for (const Row& row : landmark.rows) unknowns.insert(unknowns.end(), row.index.begin(), row.index.end());
     std::sort(unknowns.begin(), unknowns.end());
     unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
-    return unknowns;
+    for (Row& row : landmark.rows) {
+      for (std::size_t a = 0; a < kEntries; ++a) {
+        const auto found = std::lower_bound(unknowns.begin(), unknowns.end(), row.index[a]);
+        row.place[a] = static_cast<int>(found - unknowns.begin());
+      }
+    }
   }
 
   /// The equations of one landmark, its position eliminated.
-  void addLandmark(const std::vector<Row>& rows, BiasInformation& all) const {
+  void addLandmark(const LandmarkRows& landmark, BiasInformation& all) const {
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    std::vector<int> place(static_cast<std::size_t>(size_), -1);  // of each unknown in `used`
-    const std::vector<int> used = unknownsOf(rows);               // without the many that it has nothing to do with
-    for (std::size_t i = 0; i < used.size(); ++i) place[static_cast<std::size_t>(used[i])] = static_cast<int>(i);
+    const auto& [rows, used] = landmark;
     const auto count = static_cast<Eigen::Index>(used.size());
     Eigen::Matrix<double, Eigen::Dynamic, 3> cross = Eigen::MatrixXd::Zero(count, 3);
     const Eigen::Vector3d origin_m = rows.front().point_m;  // keeps the numbers small
@@ -150,7 +157,7 @@ class StretchEquations {
       const Eigen::Vector3d d = row.point_m - origin_m;
       const Eigen::Matrix<double, kEntries, 1> JtWd = JtW * d;
       for (int a = 0; a < kEntries; ++a) {
-        cross.row(place[static_cast<std::size_t>(row.index[a])]) += JtW.row(a);
+        cross.row(row.place[a]) += JtW.row(a);
         all.vector[row.index[a]] -= JtWd[a];
         for (int b = 0; b <= a; ++b) all.matrix(row.index[a], row.index[b]) += JtWJ(a, b);
       }
@@ -239,7 +246,7 @@ class StretchEquations {
   const BiasLayout& layout_;
   const BiasMotionNoise& noise_;
   int size_ = 0;
-  LandmarkRows landmarks_;
+  std::vector<LandmarkRows> landmarks_;
 };
 
 }  // namespace

@@ -42,6 +42,8 @@ FrameInterpretation FrameInterpreter::interpret(const AssignmentList& assignment
   };
   mark(1);
   FrameInterpretation result;
+  result.roles.reserve(problem.gated.size());
+  result.landmark_of_measurement.reserve(problem.gated.size());
   for (int i = 0; i < problem.measurements; ++i) {
     result.roles.push_back(roleOf(i, assignments.column(choice, i)));
     const LandmarkId id_if_new = expansion_.measurements[static_cast<std::size_t>(i)].id_if_new;

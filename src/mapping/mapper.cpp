@@ -23,6 +23,17 @@ Eigen::Vector3d alongRay(const Eigen::Matrix3d& cov_m2, const Eigen::Vector3d& r
   return {std::sqrt(along.dot(cov_m2 * along)), std::sqrt(across.dot(cov_m2 * across)), std::sqrt(up.dot(cov_m2 * up))};
 }
 
+/// Of a detection, by its variances along the ray, across it and vertically.
+Eigen::Matrix3d covAlongRay(const Detection& detection, const Eigen::Vector3d& variance_m2) {
+  const double range_m = detection.position_m.head<2>().norm();
+  Eigen::Matrix3d cov = Eigen::Vector3d(variance_m2[1], variance_m2[1], variance_m2[2]).asDiagonal();
+  if (range_m > 0.0) {
+    const Eigen::Vector2d ray = detection.position_m.head<2>() / range_m;
+    cov.topLeftCorner<2, 2>() += (variance_m2[0] - variance_m2[1]) * ray * ray.transpose();
+  }
+  return cov;
+}
+
 /// How far apart parts of one object are shown, squared, in units of the covariance of both centroids: one of the two
 /// may be far off.
 double partsGate(const MapperConfig& config) {
@@ -74,30 +85,29 @@ Detections Mapper::calibrated(Detections detections) const {
 Eigen::Matrix3d Mapper::detectorCov(const Detection& detection) const {
   if (detection.cov_m2) return *detection.cov_m2;
   const double range_m = detection.position_m.head<2>().norm();
-  const Eigen::Vector3d variance_m2 = calibration_.noiseStddev(detection.class_index, range_m).cwiseAbs2();
-  Eigen::Matrix3d cov = Eigen::Vector3d(variance_m2[1], variance_m2[1], variance_m2[2]).asDiagonal();
-  if (range_m > 0.0) {
-    const Eigen::Vector2d ray = detection.position_m.head<2>() / range_m;
-    cov.topLeftCorner<2, 2>() += (variance_m2[0] - variance_m2[1]) * ray * ray.transpose();
-  }
-  return cov;
+  return covAlongRay(detection, calibration_.noiseStddev(detection.class_index, range_m).cwiseAbs2());
 }
 
 Measurement Mapper::makeMeasurement(const Detection& detection) {
   Measurement measurement;
+  const ClassNoise* noise = nullptr;
+  if (!detection.cov_m2 && config_.semantics) {
+    measurement.noise_of_class = noiseOfClasses(detection.position_m.head<2>().norm());
+    noise = &(*measurement.noise_of_class)[static_cast<std::size_t>(detection.class_index)];
+  }
+  const Eigen::Matrix3d detector_cov =
+      noise != nullptr ? covAlongRay(detection, noise->stddev_m.cwiseAbs2()) : detectorCov(detection);
   measurement.position_m = bias_.corrected(detection).position_m;
-  measurement.cov_m2 = detectorCov(detection) + bias_.uncertainty(detection.class_index, detection.position_m);
+  measurement.cov_m2 = detector_cov + bias_.uncertainty(detection.class_index, detection.position_m);
   measurement.ray_m = measurement.position_m;
   measurement.noise_stddev_m = alongRay(measurement.cov_m2, measurement.ray_m);
   const AssociationConfig& association = config_.association;
   measurement.outlier_cov_m2 = association.outlier_factor * association.outlier_factor * measurement.cov_m2;
   measurement.outlier_cov_m2.diagonal().array() += std::pow(association.outlier_min_stddev_m, 2);
-  measurement.wander_variance_per_m = calibration_.wanderVariancePerMetre(detection.class_index);
+  measurement.wander_variance_per_m =
+      noise != nullptr ? noise->wander_variance_per_m : calibration_.wanderVariancePerMetre(detection.class_index);
   measurement.class_index = detection.class_index;
   measurement.row = detection.row;
-  if (!detection.cov_m2 && config_.semantics) {
-    measurement.noise_of_class = noiseOfClasses(detection.position_m.head<2>().norm());
-  }
   return measurement;
 }
 
@@ -142,6 +152,7 @@ void Mapper::add(Frame frame, Rng& rng) {
   dropMoving(frame);
   calibration_.add(frame.T_odom_base, frame.detections);
   noise_of_class_ = {};
+  input.measurements.reserve(frame.detections.size());
   for (const Detection& detection : frame.detections) {
     input.measurements.push_back(makeMeasurement(detection));
     input.measurements.back().id_if_new = next_landmark_++;

@@ -119,6 +119,8 @@ void Mapper::judgeAssociations(const std::vector<FusedAssociations>& fused, cons
     const Pose T = corrected(T_submap_base(frames[k]), fused[k].offset);
     std::vector<Measurement> measurements;
     std::vector<LandmarkId> assigned;
+    measurements.reserve(frames[k].detections.size());
+    assigned.reserve(frames[k].detections.size());
     for (std::size_t i = 0; i < frames[k].detections.size(); ++i) {
       measurements.push_back(inSubmap(makeMeasurement(frames[k].detections[i]), T, &fused[k].offset));
       assigned.push_back(next[static_cast<std::ptrdiff_t>(i)].landmark);

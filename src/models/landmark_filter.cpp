@@ -9,20 +9,15 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr int kDimension = 3;
-constexpr int kPoints = 2 * kDimension + 1;
-// kappa = 3 - n = 0 for n = 3 matches the fourth moment of a Gaussian: the centre point has weight 0
+// kappa = 3 - n = 0 for n = 3 matches the fourth moment of a Gaussian: the centre point has weight 0, and is left out
+constexpr int kPoints = 2 * kDimension;
 constexpr double kSpread = 3.0;
-constexpr double kOuterWeight = 1.0 / (2.0 * kSpread);
-constexpr double kCentreWeight = 1.0 - kDimension / kSpread;
+constexpr double kWeight = 1.0 / (2.0 * kSpread);
 
 using SigmaPoints = std::array<Eigen::Vector3d, kPoints>;
 
 double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * M_PI);
-}
-
-double weightOf(int i) {
-  return i == 0 ? kCentreWeight : kOuterWeight;
+  return std::abs(angle_rad) <= M_PI ? angle_rad : std::remainder(angle_rad, 2.0 * M_PI);
 }
 
 std::optional<SigmaPoints> sigmaPoints(const Gaussian3& gaussian) {
@@ -30,10 +25,9 @@ std::optional<SigmaPoints> sigmaPoints(const Gaussian3& gaussian) {
   if (factor.info() != Eigen::Success) return std::nullopt;
   const Eigen::Matrix3d offsets = std::sqrt(kSpread) * Eigen::Matrix3d(factor.matrixL());
   SigmaPoints points;
-  points[0] = gaussian.mean_m;
   for (int i = 0; i < kDimension; ++i) {
-    points[1 + static_cast<std::size_t>(i)] = gaussian.mean_m + offsets.col(i);
-    points[1 + kDimension + static_cast<std::size_t>(i)] = gaussian.mean_m - offsets.col(i);
+    points[static_cast<std::size_t>(i)] = gaussian.mean_m + offsets.col(i);
+    points[kDimension + static_cast<std::size_t>(i)] = gaussian.mean_m - offsets.col(i);
   }
   return points;
 }
@@ -48,18 +42,16 @@ std::optional<FilterUpdate> update(const Gaussian3& prior, const Eigen::Vector3d
   const Eigen::Vector3d reference = predict(prior.mean_m);
   SigmaPoints offsets;  // predicted measurements relative to the reference, where differences of angles are small
   Eigen::Vector3d mean_offset = Eigen::Vector3d::Zero();
-  for (int i = 0; i < kPoints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (std::size_t k = 0; k < kPoints; ++k) {
     offsets[k] = difference(predict((*points)[k]), reference);
-    mean_offset += weightOf(i) * offsets[k];
+    mean_offset += kWeight * offsets[k];
   }
   Eigen::Matrix3d innovation_cov = noise;
   Eigen::Matrix3d cross_cov = Eigen::Matrix3d::Zero();
-  for (int i = 0; i < kPoints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (std::size_t k = 0; k < kPoints; ++k) {
     const Eigen::Vector3d d = offsets[k] - mean_offset;
-    innovation_cov += weightOf(i) * d * d.transpose();
-    cross_cov += weightOf(i) * ((*points)[k] - prior.mean_m) * d.transpose();
+    innovation_cov += kWeight * d * d.transpose();
+    cross_cov += kWeight * ((*points)[k] - prior.mean_m) * d.transpose();
   }
   const Eigen::Vector3d innovation = difference(measured, reference) - mean_offset;
   const auto evaluation = evaluate({Eigen::Vector3d::Zero(), innovation_cov}, innovation);

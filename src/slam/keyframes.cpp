@@ -22,24 +22,23 @@ struct WeightedSum {
 class KeptLandmarks {
  public:
   KeptLandmarks(const Submap& submap, double keep_prob) {
-    for (const MixtureLandmark& landmark : submap.landmarks) {
-      if (landmark.existence_prob >= keep_prob) by_id_[landmark.id] = &landmark;
-    }
     for (const DetectionAssociation& association : submap.associations) {
-      const auto found = by_id_.find(association.landmark);
-      if (found != by_id_.end()) of_detection_[{association.frame, association.row}] = found->second;
+      const MixtureLandmark* landmark = findLandmark(association.landmark, submap.landmarks);
+      if (landmark == nullptr || landmark->existence_prob < keep_prob) continue;
+      of_detection_.push_back({{association.frame, association.row}, landmark});
     }
   }
 
   /// The landmark that a detection belongs to; null for none.
   const MixtureLandmark* of(std::size_t frame, int row) const {
-    const auto found = of_detection_.find({frame, row});
-    return found == of_detection_.end() ? nullptr : found->second;
+    const std::pair<std::size_t, int> detection(frame, row);
+    const auto found = std::lower_bound(of_detection_.begin(), of_detection_.end(), detection,
+                                        [](const auto& known, const auto& wanted) { return known.first < wanted; });
+    return found == of_detection_.end() || found->first != detection ? nullptr : found->second;
   }
 
  private:
-  std::map<LandmarkId, const MixtureLandmark*> by_id_;
-  std::map<std::pair<std::size_t, int>, const MixtureLandmark*> of_detection_;
+  std::vector<std::pair<std::pair<std::size_t, int>, const MixtureLandmark*>> of_detection_;  ///< by frame and row
 };
 
 /// Collects what one keyframe sees.
@@ -52,16 +51,21 @@ class SightingCollector {
         odometry_(odometry),
         config_(config) {}
 
-  void add(const MixtureLandmark& landmark, const Pose& T_odom_base, const Motion& motion, const Detection& detection) {
-    const Pose T_keyframe_base = expectedStep(odometry_, T_keyframe_odom_ * T_odom_base);
-    const Eigen::Matrix3d R = T_keyframe_base.rotation.toRotationMatrix();
-    const Eigen::Matrix3d cov = R * detection.cov_m2.value() * R.transpose() +
-                                driftOf(motion, T_keyframe_base.translation_m, R * detection.position_m);
+  /// Goes on to a frame, where `motion` from the keyframe has led.
+  void moveTo(const Pose& T_odom_base, const Motion& motion) {
+    T_keyframe_base_ = expectedStep(odometry_, T_keyframe_odom_ * T_odom_base);
+    R_keyframe_base_ = T_keyframe_base_.rotation.toRotationMatrix();
+    variance_ = varianceOf(odometry_, motion);
+  }
+
+  void add(const MixtureLandmark& landmark, const Detection& detection) {
+    const Eigen::Matrix3d& R = R_keyframe_base_;
+    const Eigen::Matrix3d cov = R * detection.cov_m2.value() * R.transpose() + driftAt(R * detection.position_m);
     const Eigen::Matrix3d information = cov.inverse();
     WeightedSum& sum = sums_[landmark.id];
     sum.landmark = &landmark;
     sum.information += information;
-    sum.weighted += information * (T_keyframe_base * detection.position_m);
+    sum.weighted += information * (T_keyframe_base_ * detection.position_m);
     ++sum.count;
   }
 
@@ -82,14 +86,13 @@ class SightingCollector {
 
  private:
   /// Covariance of what the odometry is off by at a place `lever_m` from the base, keyframe's axes.
-  Eigen::Matrix3d driftOf(const Motion& motion, const Eigen::Vector3d& way_m, const Eigen::Vector3d& lever_m) const {
-    const MotionVariance variance = varianceOf(odometry_, motion);
-    const double planar_m2 = std::max(variance.along_m2, variance.across_m2);
-    Eigen::Matrix3d cov = Eigen::Vector3d(planar_m2, planar_m2, variance.up_m2).asDiagonal();
-    const Eigen::Vector3d reach_m = lever_m + 0.5 * way_m;
+  Eigen::Matrix3d driftAt(const Eigen::Vector3d& lever_m) const {
+    const double planar_m2 = std::max(variance_.along_m2, variance_.across_m2);
+    Eigen::Matrix3d cov = Eigen::Vector3d(planar_m2, planar_m2, variance_.up_m2).asDiagonal();
+    const Eigen::Vector3d reach_m = lever_m + 0.5 * T_keyframe_base_.translation_m;
     const Eigen::Vector3d turned(-reach_m.y(), reach_m.x(), 0.0);
-    cov += variance.heading_rad2 * turned * turned.transpose();
-    cov(2, 2) += variance.tilt_rad2 * reach_m.head<2>().squaredNorm();
+    cov += variance_.heading_rad2 * turned * turned.transpose();
+    cov(2, 2) += variance_.tilt_rad2 * reach_m.head<2>().squaredNorm();
     return cov;
   }
 
@@ -97,6 +100,9 @@ class SightingCollector {
   Pose T_keyframe_submap_;
   const OdometryModel& odometry_;
   const KeyframeConfig& config_;
+  Pose T_keyframe_base_;
+  Eigen::Matrix3d R_keyframe_base_;
+  MotionVariance variance_;
   std::map<LandmarkId, WeightedSum> sums_;
 };
 
@@ -125,10 +131,10 @@ CutSubmap cutIntoKeyframes(const Submap& submap, const std::vector<Frame>& frame
       cut.sightings.emplace_back();
       collector.emplace(frame.T_odom_base, submap.T_odom_submap, odometry, config);
     }
+    collector->moveTo(frame.T_odom_base, driven - motionTo(cut.keyframes.back()));
     for (const Detection& detection : frame.detections) {
       const MixtureLandmark* landmark = landmarks.of(frame.index, detection.row);
-      if (landmark == nullptr) continue;
-      collector->add(*landmark, frame.T_odom_base, driven - motionTo(cut.keyframes.back()), detection);
+      if (landmark != nullptr) collector->add(*landmark, detection);
     }
   }
   if (collector) collector->writeTo(cut);

@@ -120,6 +120,7 @@ class AssociationModel {
   ClutterModel clutter_;
   NeighbourDensity neighbours_;
   std::vector<double> log_class_prior_;
+  std::vector<double> log_count_;  ///< by count, up to the largest that matters
   std::vector<double> transition_variance_m2_;
   double log_uniform_density_;
   double log_inlier_prob_;
