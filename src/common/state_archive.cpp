@@ -21,8 +21,29 @@ void StateArchive::fail(const std::string& what) {
   throw InputError("broken state: " + what);
 }
 
+StateArchive::StateArchive(std::string_view bytes, KeepReading keep_reading, int classes, std::size_t memory)
+    : is_reading_(true), input_(bytes), keep_reading_(std::move(keep_reading)), classes_(classes), memory_(memory) {
+  const std::uint64_t numbers = varint(0);
+  if (numbers > input_.size() / sizeof(double)) fail("more numbers than bytes");
+  new_numbers_ = input_.substr(0, numbers * sizeof(double));
+  input_.remove_prefix(new_numbers_.size());
+}
+
+std::string StateArchive::written() const {
+  StateArchive head;
+  head.varint(written_new_.size());
+  std::string result = std::move(head.output_);
+  result.reserve(result.size() + sizeof(double) * written_new_.size() + output_.size());
+  for (unsigned shift = 0; shift < 64; shift += 8) {
+    for (const std::uint64_t bits : written_new_) result.push_back(static_cast<char>(bits >> shift));
+  }
+  return result + output_;
+}
+
 void StateArchive::requireEnd() const {
+  const std::size_t unread = new_numbers_.size() / sizeof(double) - next_new_;
   if (!input_.empty()) fail(std::to_string(input_.size()) + " bytes too many");
+  if (unread > 0) fail(std::to_string(unread) + " numbers too many");
 }
 
 std::uint8_t StateArchive::byte(std::uint8_t value) {
@@ -37,15 +58,39 @@ std::uint8_t StateArchive::byte(std::uint8_t value) {
 }
 
 void StateArchive::number(double& value) {
+  if (is_reading_) {
+    const std::uint64_t bits = nextNumber();
+    std::memcpy(&value, &bits, sizeof value);
+    if (!(std::abs(value) <= kLargest)) fail("a number is not finite, or too large");
+    return;
+  }
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
-  std::uint64_t result = 0;
-  for (int i = 0; i < 8; ++i) {
-    result |= static_cast<std::uint64_t>(byte(static_cast<std::uint8_t>(bits >> (8 * i)))) << (8 * i);
+  const auto [last, is_new] = last_at_.try_emplace(bits, written_numbers_);
+  varint(written_numbers_ - last->second);  // 0: not written before
+  if (is_new) written_new_.push_back(bits);
+  last->second = written_numbers_++;
+}
+
+/// The bits of the next double.
+std::uint64_t StateArchive::nextNumber() {
+  const std::uint64_t back = varint(0);
+  if (back > numbers_.size()) fail("it repeats a number that there is not");
+  std::uint64_t bits = 0;
+  if (back > 0) {
+    bits = numbers_[numbers_.size() - back];
+  } else {
+    const std::size_t count = new_numbers_.size() / sizeof(double);
+    if (next_new_ == count) fail("it ends too early");
+    for (std::size_t i = 0; i < sizeof(double); ++i) {
+      const auto part = static_cast<std::uint8_t>(new_numbers_[i * count + next_new_]);
+      bits |= static_cast<std::uint64_t>(part) << (8 * i);
+    }
+    ++next_new_;
   }
-  if (!is_reading_) return;
-  std::memcpy(&value, &result, sizeof value);
-  if (!(std::abs(value) <= kLargest)) fail("a number is not finite, or too large");
+  takeMemory(1, sizeof bits);
+  numbers_.push_back(bits);
+  return bits;
 }
 
 void StateArchive::requireClass(int class_index) const {

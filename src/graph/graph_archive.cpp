@@ -44,6 +44,33 @@ void requireIndex(int index, std::size_t size) {
   if (place >= size) StateArchive::fail("a number names no part of the graph");
 }
 
+bool isAs(const PoseNode& expected, const OdometryStep& step, const SharedErrors& shared_errors) {
+  const Pose& pose = expected.T_previous_node;
+  return pose.rotation.coeffs() == step.T_previous_node.rotation.coeffs() &&
+         pose.translation_m == step.T_previous_node.translation_m && expected.odometry_cov == step.cov &&
+         expected.shared_errors == shared_errors;
+}
+
+/// The odometry of each node of a graph, without its costs.
+void transferOdometry(StateArchive& archive, const std::vector<PoseNode>& expected, std::vector<OdometryStep>& odometry,
+                      GraphState& graph) {
+  const std::size_t count = archive.count(odometry.size());
+  if (count != graph.nodes.size()) StateArchive::fail("a graph with more nodes than odometry");
+  if (archive.isReading()) odometry.assign(count, {});
+  for (std::size_t i = 0; i < count; ++i) {
+    OdometryStep& step = odometry[i];
+    SharedErrors& shared_errors = graph.nodes[i].shared_errors;
+    bool is_expected = i < expected.size() && isAs(expected[i], step, shared_errors);
+    archive(is_expected);
+    if (!is_expected) archive(step.T_previous_node, step.cov, shared_errors);
+    if (is_expected && archive.isReading()) {
+      if (i >= expected.size()) StateArchive::fail("odometry that nobody knows");
+      step = {expected[i].T_previous_node, expected[i].odometry_cov};
+      shared_errors = expected[i].shared_errors;
+    }
+  }
+}
+
 /// Nodes know the landmarks and loop closures that name them, and no others.
 void requireReferences(const StateArchive& archive, const GraphState& graph) {
   for (const auto& [number, kept] : graph.group_of) {  // by the lowest number of each group
@@ -93,9 +120,9 @@ void transfer(StateArchive& archive, PriorFactor& prior) {
   transferCost(archive, prior.cost);
 }
 
-/// Without the cost of odometry, which `PoseGraph` makes again.
+/// Without odometry.
 void transfer(StateArchive& archive, NodeState& node) {
-  archive(node.block, node.landmarks, node.loops, node.priors, node.shared_errors);
+  archive(node.block, node.landmarks, node.loops, node.priors);
   archive.require(node.pose().isValid(), "a node whose pose is none");
 }
 
@@ -145,8 +172,8 @@ void LoopReview::transfer(StateArchive& archive, const GraphState& graph) {
   }
 }
 
-void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::vector<OdometryStep>& odometry,
-                   GraphState& graph, LoopReview& review) {
+void transferGraph(StateArchive& archive, const PoseGraphConfig& config, const std::vector<PoseNode>& expected,
+                   std::vector<OdometryStep>& odometry, GraphState& graph, LoopReview& review) {
   int window_nodes = config.window_nodes;
   int chunk_nodes = config.chunk_nodes;
   archive(window_nodes, chunk_nodes);
@@ -154,8 +181,8 @@ void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::ve
     throw InputError("made with graph.window_nodes " + std::to_string(window_nodes) + " and graph.chunk_nodes " +
                      std::to_string(chunk_nodes) + ", other ones than now");
   }
-  archive(odometry, graph);
-  if (odometry.size() != graph.nodes.size()) StateArchive::fail("a graph with more nodes than odometry");
+  archive(graph);
+  transferOdometry(archive, expected, odometry, graph);
   if (archive.isReading()) {
     for (std::size_t i = 0; i < odometry.size(); ++i) {
       const auto& [T_previous_node, cov] = odometry[i];

@@ -13,13 +13,11 @@ namespace semantic_mht_slam {
 struct OdometryStep {
   Pose T_previous_node;
   PoseCov cov;
-
-  void transfer(StateArchive& archive) { archive(T_previous_node, cov); }
 };
 
-/// Everything that was added to a graph, with the estimate and what was decided of loop closures. Throws InputError if
-/// it was written with other sizes of windows or chunks.
-void transferGraph(StateArchive& archive, const PoseGraphConfig& config, std::vector<OdometryStep>& odometry,
-                   GraphState& graph, LoopReview& review);
+/// Everything that was added to a graph, with the estimate and what was decided of loop closures; of odometry that is
+/// as `expected` only that. Throws InputError if it was written with other sizes of windows or chunks.
+void transferGraph(StateArchive& archive, const PoseGraphConfig& config, const std::vector<PoseNode>& expected,
+                   std::vector<OdometryStep>& odometry, GraphState& graph, LoopReview& review);
 
 }  // namespace semantic_mht_slam

@@ -40,7 +40,7 @@ class PoseGraph::Impl {
   std::optional<std::vector<NodeMarginal>> coarseMarginals() const { return hierarchy_.marginals(graph_); }
   const PoseGraphConfig& config() const { return config_; }
   LoopDecision decision(int loop) const;
-  void transfer(StateArchive& archive);
+  void transfer(StateArchive& archive, const std::vector<PoseNode>& expected);
 
   mutable GraphState graph_;  // lent to Ceres, whose interface takes mutable addresses also for evaluation
 
@@ -103,8 +103,8 @@ void PoseGraph::Impl::regroup(std::vector<std::vector<std::int64_t>> groups) {
   hierarchy_.touch(graph_.regroup(groups));
 }
 
-void PoseGraph::Impl::transfer(StateArchive& archive) {
-  transferGraph(archive, config_, odometry_, graph_, review_);
+void PoseGraph::Impl::transfer(StateArchive& archive, const std::vector<PoseNode>& expected) {
+  transferGraph(archive, config_, expected, odometry_, graph_, review_);
   archive(hierarchy_, in_hierarchy_, reported_);
   archive.require(hierarchy_.fits(graph_, in_hierarchy_), "a coarse graph of other nodes than there are");
   archive.require(reported_.size() <= graph_.loops.size(), "more loop closures told than there are");
@@ -248,9 +248,9 @@ PoseGraphUpdate PoseGraph::optimize() {
 PoseGraphUpdate PoseGraph::optimizeFully() {
   return impl_->optimizeFully();
 }
-void PoseGraph::transfer(StateArchive& archive) {
+void PoseGraph::transfer(StateArchive& archive, const std::vector<PoseNode>& expected) {
   if (archive.isReading() && nodes() > 0) throw std::logic_error("PoseGraph: a state is read into an empty graph");
-  impl_->transfer(archive);
+  impl_->transfer(archive, expected);
 }
 PoseNode PoseGraph::node(int index) const {
   return impl_->graph_.node(index);

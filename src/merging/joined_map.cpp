@@ -222,7 +222,8 @@ class Joining {
     if (first.mapper) {
       StateArchive writing;
       const_cast<Mapper&>(*first.mapper).transfer(writing);  // a writing archive changes nothing
-      StateArchive reading(writing.written());
+      const std::string reading_bytes = writing.written();
+      StateArchive reading(reading_bytes);
       parts.mapper->transfer(reading);
     }
     parts.mapper->goOnAfter(SubmapId(parts.map.submaps().size() - 1), landmarks_);

@@ -11,12 +11,33 @@ namespace {
 
 constexpr double kAlike_m = 3.0;  // over which systematic errors that are not known act as one
 constexpr double kAlike_rad = 1.0;
+constexpr double kLargest = 1e30;  // whose products with a way and with themselves are numbers
 
 double squared(double value) {
   return value * value;
 }
 
+void transfer(StateArchive& archive, CoefficientEstimate& estimate) {
+  auto& [mean, stddev] = estimate;
+  archive(mean, stddev);
+  archive.require(std::abs(mean) <= kLargest && stddev >= 0.0 && stddev <= kLargest,
+                  "an error of the odometry that is none");
+}
+
 }  // namespace
+
+void transfer(StateArchive& archive, OdometryModel& model) {
+  auto& [along, across, up, heading_by_way, heading_by_turn, tilt] = model.noise;
+  for (double* stddev : {&along, &across, &up, &heading_by_way, &heading_by_turn, &tilt}) {
+    archive(*stddev);
+    archive.require(*stddev >= 0.0 && *stddev <= kLargest, "a deviation of the odometry that is none");
+  }
+  auto& [scale_translation, scale_turn, heading_rad_per_m, direction_m_per_m, lever_m_per_rad] = model.systematic;
+  for (CoefficientEstimate* estimate :
+       {&scale_translation, &scale_turn, &heading_rad_per_m, &direction_m_per_m, &lever_m_per_rad}) {
+    transfer(archive, *estimate);
+  }
+}
 
 void describe(OdometryNoise& noise, Fields& fields) {
   fields.add("along", noise.along_m_per_sqrt_m, "m/sqrt(m)", {1e-5, 10.0},

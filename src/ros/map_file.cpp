@@ -58,6 +58,42 @@ MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const Syst
 constexpr std::size_t kPiece = std::size_t{1} << 20U;
 constexpr std::size_t kBesidePiece = 1U << 10U;  // name, version, digest
 
+/// Half of the bits of a number are noise to whoever reads a map, and most of what it takes in a file.
+void toSinglePrecision(double& value) {
+  value = static_cast<float>(value);
+}
+
+void toSinglePrecision(geometry_msgs::Point& point) {
+  for (double* value : {&point.x, &point.y, &point.z}) toSinglePrecision(*value);
+}
+
+nav_msgs::Path inSinglePrecision(nav_msgs::Path path) {
+  for (geometry_msgs::PoseStamped& stamped : path.poses) {
+    geometry_msgs::Quaternion& q = stamped.pose.orientation;
+    toSinglePrecision(stamped.pose.position);
+    for (double* value : {&q.x, &q.y, &q.z, &q.w}) toSinglePrecision(*value);
+  }
+  return path;
+}
+
+SemanticMap inSinglePrecision(SemanticMap map) {
+  for (Landmark& landmark : map.landmarks) {
+    toSinglePrecision(landmark.position);
+    for (double& value : landmark.class_probs) toSinglePrecision(value);
+    for (double& value : landmark.covariance) toSinglePrecision(value);
+    for (double* value :
+         {&landmark.existence_prob, &landmark.seen_standing, &landmark.size.x, &landmark.size.y, &landmark.size.z}) {
+      toSinglePrecision(*value);
+    }
+    for (GaussianComponent& component : landmark.components) {
+      toSinglePrecision(component.weight);
+      toSinglePrecision(component.mean);
+      for (double& value : component.covariance) toSinglePrecision(value);
+    }
+  }
+  return map;
+}
+
 /// One after the other; none so large that reading it could not be interrupted.
 std::vector<MapSection> toMessages(const StateSection& section) {
   std::vector<MapSection> messages;
@@ -211,8 +247,8 @@ std::size_t writeMapFile(const std::string& path, const SavedMap& map, const Sys
     for (const StateSection& section : map.state.sections) {
       for (const MapSection& piece : toMessages(section)) bag.write(kSectionTopic, time, piece);
     }
-    bag.write(kMapTopic, time, message);
-    bag.write(kTrajectoryTopic, time, toPath(map.trajectory, config.node.map_frame));
+    bag.write(kMapTopic, time, inSinglePrecision(message));
+    bag.write(kTrajectoryTopic, time, inSinglePrecision(toPath(map.trajectory, config.node.map_frame)));
   });
 }
 

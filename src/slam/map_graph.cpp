@@ -23,6 +23,23 @@ PoseCov poseCov(double stddev_m, double stddev_rad) {
   return cov;
 }
 
+/// The node of a keyframe by odometry.
+PoseNode odometryNode(const Map& map, KeyframeId id, const OdometryModel& odometry) {
+  const Keyframe& keyframe = map.keyframes()[id];
+  PoseNode node;
+  if (id == KeyframeId(0)) {
+    node.T_previous_node = keyframe.T_odom_base;
+    return node;
+  }
+  const Keyframe& previous = map.keyframes()[KeyframeId(id.index() - 1)];
+  const Pose T_previous_keyframe = previous.T_odom_base.inverse() * keyframe.T_odom_base;
+  node.T_previous_node = expectedStep(odometry, T_previous_keyframe);
+  node.odometry_cov = stepCovariance(odometry, motionTo(keyframe) - motionTo(previous), T_previous_keyframe);
+  node.odometry_cov += poseCov(kLeastStep_m, kLeastStep_rad);
+  node.shared_errors = sharedErrorsOf(odometry.systematic, T_previous_keyframe);
+  return node;
+}
+
 }  // namespace
 
 MapGraph::MapGraph(const BackEndConfig& config, const ClassTable& classes)
@@ -30,6 +47,7 @@ MapGraph::MapGraph(const BackEndConfig& config, const ClassTable& classes)
 
 void MapGraph::add(const Map& map, IdRange<KeyframeId> keyframes, const std::vector<std::vector<Sighting>>& sightings,
                    const OdometryModel& odometry) {
+  odometry_[map.keyframes()[keyframes.front()].submap] = odometry;
   auto seen = sightings.begin();
   for (const KeyframeId keyframe : keyframes) graph_.addNode(nodeOf(map, keyframe, *seen++, odometry));
 }
@@ -37,17 +55,7 @@ void MapGraph::add(const Map& map, IdRange<KeyframeId> keyframes, const std::vec
 PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sighting>& sightings,
                           const OdometryModel& odometry) {
   const Keyframe& keyframe = map.keyframes()[id];
-  PoseNode node;
-  if (id == KeyframeId(0)) {
-    node.T_previous_node = keyframe.T_odom_base;
-  } else {
-    const Keyframe& previous = map.keyframes()[KeyframeId(id.index() - 1)];
-    const Pose T_previous_keyframe = previous.T_odom_base.inverse() * keyframe.T_odom_base;
-    node.T_previous_node = expectedStep(odometry, T_previous_keyframe);
-    node.odometry_cov = stepCovariance(odometry, motionTo(keyframe) - motionTo(previous), T_previous_keyframe);
-    node.odometry_cov += poseCov(kLeastStep_m, kLeastStep_rad);
-    node.shared_errors = sharedErrorsOf(odometry.systematic, T_previous_keyframe);
-  }
+  PoseNode node = odometryNode(map, id, odometry);
   if (T_map_odom_start_ && !map.T_map_keyframes().empty()) {
     node.T_previous_node = map.T_map_keyframes().back().inverse() * (*T_map_odom_start_ * keyframe.T_odom_base);
     node.odometry_cov = poseCov(kSessionStddev_m, kSessionStddev_rad);
@@ -148,8 +156,23 @@ LandmarkId MapGraph::keptName(LandmarkId id) const {
   return static_cast<LandmarkId>(graph_.keptNumber(static_cast<std::int64_t>(id)));
 }
 
+/// Of nodes that came by odometry.
+std::vector<PoseNode> MapGraph::expectedOdometry(const Map& map) const {
+  std::vector<PoseNode> nodes;
+  for (const KeyframeId id : map.keyframes().ids()) {
+    const auto known = odometry_.find(map.keyframes()[id].submap);
+    nodes.push_back(known == odometry_.end() ? PoseNode{} : odometryNode(map, id, known->second));
+  }
+  return nodes;
+}
+
 void MapGraph::transfer(StateArchive& archive, const Map& map) {
-  archive(graph_, T_map_odom_start_);
+  archive(odometry_);
+  if (!odometry_.empty() && !map.submaps().has(odometry_.rbegin()->first)) {
+    StateArchive::fail("odometry of a submap that there is not");
+  }
+  graph_.transfer(archive, expectedOdometry(map));
+  archive(T_map_odom_start_);
   if (graph_.poses().size() != map.keyframes().size()) StateArchive::fail("a graph of other keyframes");
   if (!archive.isReading()) return;
   next_closure_ = map.closures().nextId();

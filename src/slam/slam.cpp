@@ -164,7 +164,8 @@ void Slam::endSubmap() {
   if (keyframes.front() == KeyframeId(0)) noteStart(parts_);
   parts_.graph.settle(map);
   parts_.closer->add(map);
-  const ClosureQuery query{keyframes, std::move(finished.alignment), parts_.prediction, parts_.tied_at_m};
+  const ClosureQuery query{keyframes, std::move(finished.alignment), std::exchange(parts_.prediction, {}),
+                           parts_.tied_at_m};
   for (const ClosureSource source : parts_.closer->sources()) {
     bool is_any_verified = false;
     for (LoopClosureRecord& closure : parts_.closer->find(source, map, query)) {

@@ -125,9 +125,9 @@ struct Section {
   void (*transfer)(StateArchive& archive, const SlamConfig& config, SlamParts& parts);
 };
 
-constexpr Section kSections[] = {{"detector", 1, transferDetector}, {"input", 4, transferInput},
-                                 {"submaps", 3, transferSubmaps},   {"keyframes", 4, transferKeyframes},
-                                 {"graph", 4, transferGraph},       {"hypotheses", 8, transferMapper}};
+constexpr Section kSections[] = {{"detector", 2, transferDetector}, {"input", 5, transferInput},
+                                 {"submaps", 4, transferSubmaps},   {"keyframes", 5, transferKeyframes},
+                                 {"graph", 5, transferGraph},       {"hypotheses", 9, transferMapper}};
 
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
 void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,

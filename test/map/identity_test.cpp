@@ -154,7 +154,8 @@ TEST_P(RandomIdentityTest, TheResultDependsOnWhatHoldsNotOnHowItCameToBe) {
   StateArchive writing;
   identity_.transfer(writing);
   Identity again;
-  StateArchive reading(writing.written());
+  const std::string reading_bytes = writing.written();
+  StateArchive reading(reading_bytes);
   again.transfer(reading);
   again.restore(submaps_, sayings);
   int merged = 0;

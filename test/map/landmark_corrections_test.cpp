@@ -37,7 +37,8 @@ TEST(LandmarkCorrectionsTest, CorrectionsOutliveTheProgram) {
   corrections.remove(removed({3, 8}, 20));
   StateArchive writing;
   writing(corrections);
-  StateArchive reading(writing.written());
+  const std::string reading_bytes = writing.written();
+  StateArchive reading(reading_bytes);
   LandmarkCorrections read;
   reading(read);
   reading.requireEnd();
@@ -51,7 +52,8 @@ TEST(LandmarkCorrectionsTest, WhatIsNoCorrectionIsRefused) {
     corrections.remove(bad);
     StateArchive writing;
     writing(corrections);
-    StateArchive reading(writing.written());
+    const std::string reading_bytes = writing.written();
+    StateArchive reading(reading_bytes);
     LandmarkCorrections read;
     EXPECT_THROW(reading(read), InputError);
   }

@@ -145,9 +145,11 @@ TEST_F(MapTest, WrittenAndReadItIsTheSame) {
   map_.transferSubmaps(submaps);
   map_.transferKeyframes(rest, 1, 0.1);
   Map again(0.5);
-  StateArchive reading(submaps.written());
+  const std::string reading_bytes = submaps.written();
+  StateArchive reading(reading_bytes);
   again.transferSubmaps(reading);
-  StateArchive reading_rest(rest.written());
+  const std::string reading_rest_bytes = rest.written();
+  StateArchive reading_rest(reading_rest_bytes);
   again.transferKeyframes(reading_rest, 1, 0.1);
   reading_rest.requireEnd();
   ASSERT_EQ(landmarksOf(again).size(), landmarksOf(map_).size());

@@ -157,7 +157,8 @@ TEST(CentroidBiasTest, ExtendedObjectsAreLeftAlone) {
 CentroidBias loaded(CentroidBias& saved, const ClassTable& classes) {
   StateArchive writing;
   saved.transfer(writing);
-  StateArchive reading(writing.written());
+  const std::string reading_bytes = writing.written();
+  StateArchive reading(reading_bytes);
   CentroidBias result({}, classes);
   result.transfer(reading);
   return result;

@@ -174,7 +174,8 @@ TEST(LandmarkPropagationTest, AnIdIsNotTwiceInASubmap) {
 LandmarkPropagation restored(LandmarkPropagation& saved) {
   StateArchive writing;
   saved.transfer(writing);
-  StateArchive reading(writing.written());
+  const std::string reading_bytes = writing.written();
+  StateArchive reading(reading_bytes);
   LandmarkPropagation result = makePropagation();
   result.transfer(reading);
   return result;

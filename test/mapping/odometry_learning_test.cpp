@@ -172,7 +172,8 @@ TEST(OdometryLearningTest, GoesOnFromAState) {
   StateArchive writing;
   learning.transfer(writing);
   OdometryLearning restored({});
-  StateArchive reading(writing.written());
+  const std::string reading_bytes = writing.written();
+  StateArchive reading(reading_bytes);
   restored.transfer(reading);
   Rng a(8);
   Rng b(8);

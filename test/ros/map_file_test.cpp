@@ -96,7 +96,13 @@ TEST_F(MapFileTest, LandmarksAndTrajectoryCanBeReadWithoutTheState) {
   ASSERT_EQ(view.size(), 1U);
   const auto map = view.begin()->instantiate<SemanticMap>();
   ASSERT_NE(map, nullptr);
-  EXPECT_EQ(map->landmarks.size(), landmarksOf(slam_).size());
+  const auto landmarks = landmarksOf(slam_);
+  ASSERT_EQ(map->landmarks.size(), landmarks.size());
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    EXPECT_EQ(map->landmarks[i].id, landmarks[i].id);
+    EXPECT_EQ(map->landmarks[i].position.x, static_cast<float>(landmarks[i].position.mean_m.x()));
+    EXPECT_EQ(map->landmarks[i].covariance[8], static_cast<float>(landmarks[i].position.cov_m2(2, 2)));
+  }
 }
 
 TEST_F(MapFileTest, OtherParametersAreAllowedAndTold) {

@@ -6,6 +6,7 @@
 
 #include "semantic_mht_slam/slam/map_uncertainty.h"
 
+#include "support/expect_input_error.h"
 #include "support/square_drive.h"
 
 namespace semantic_mht_slam {
@@ -55,6 +56,32 @@ TEST_F(MapGraphTest, ASolutionThatFailsIsCountedAndSaid) {
   EXPECT_NE(add(1.0, 1, 1e200).failure, "");
   EXPECT_EQ(graph_.status().failures, 1U);
   EXPECT_FALSE(graph_.status().newest_failure.empty());
+}
+
+TEST_F(MapGraphTest, OdometryThatTheMapTellsIsMadeAgainAndOtherIsKept) {
+  add(0.0, 1);
+  add(1.0, 1);
+  graph_.goOnAt({Eigen::Quaterniond::Identity(), {0.0, 5.0, 0.0}});
+  add(2.0, 2);
+  StateArchive writing;
+  graph_.transfer(writing, map_);
+  const std::string bytes = writing.written();
+  MapGraph again{BackEndConfig{}, makeStreetClasses()};
+  StateArchive reading(bytes);
+  again.transfer(reading, map_);
+  reading.requireEnd();
+  for (const KeyframeId id : map_.keyframes().ids()) {
+    EXPECT_EQ(again.node(id).T_previous_node.matrix(), graph_.node(id).T_previous_node.matrix());
+    EXPECT_EQ(again.node(id).odometry_cov, graph_.node(id).odometry_cov);
+    EXPECT_EQ(again.node(id).shared_errors, graph_.node(id).shared_errors);
+  }
+  StateArchive writing_again;
+  again.transfer(writing_again, map_);
+  EXPECT_EQ(writing_again.written(), bytes);
+  const Map other{0.5};
+  StateArchive refused(bytes);
+  MapGraph none{BackEndConfig{}, makeStreetClasses()};
+  expectInputError([&] { none.transfer(refused, other); }, {"a submap that there is not"});
 }
 
 TEST_F(MapGraphTest, AClosureThatOdometryContradictsJoinsNothingAndOneThatFitsJoinsItsPairs) {

@@ -67,7 +67,8 @@ TEST(OdometryContinuityTest, GoesOnFromAState) {
   StateArchive writing;
   continuity.transfer(writing);
   OdometryContinuity restored;
-  StateArchive reading(writing.written());
+  const std::string reading_bytes = writing.written();
+  StateArchive reading(reading_bytes);
   restored.transfer(reading);
   EXPECT_FALSE(restored.goesOn(at(5.1, 60.0)));
   EXPECT_TRUE(restored.goesOn(at(5.1, 51.0)));

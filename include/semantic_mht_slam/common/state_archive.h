@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -26,8 +27,10 @@ using KeepReading = std::function<bool()>;
 
 /// Values to bytes and back, without loss. One function a type, `transfer(archive, value)` or a member
 /// `transfer(archive)`, serves both directions, so that what is written and what is read cannot differ; a writing
-/// archive changes no value. Integers take as many bytes as they need, a double eight, a square matrix only what its
-/// form (zero, diagonal, symmetric, upper triangular) leaves open.
+/// archive changes no value. Integers take as many bytes as they need, a square matrix only what its form (zero,
+/// diagonal, symmetric, upper triangular) leaves open. A double takes eight bytes and one; one that was written before
+/// only says how long ago. All doubles stand before everything else, their first bytes first: what is alike is side by
+/// side, which is what a compressor needs.
 ///
 /// Reading bytes that are no such state throws InputError; whoever reads gives what has been read so far up. Bytes may
 /// come from anybody: numbers are finite, each `transfer` requires of what it has read whatever the program relies on,
@@ -39,13 +42,12 @@ class StateArchive {
 
   /// Reads; `bytes` must live as long as the archive. What is read takes no more than `memory` bytes.
   explicit StateArchive(std::string_view bytes, KeepReading keep_reading = {}, int classes = kAnyClasses,
-                        std::size_t memory = kMostMemory)
-      : is_reading_(true), input_(bytes), keep_reading_(std::move(keep_reading)), classes_(classes), memory_(memory) {}
+                        std::size_t memory = kMostMemory);
 
   bool isReading() const { return is_reading_; }
 
   /// What was written.
-  const std::string& written() const { return output_; }
+  std::string written() const;
 
   /// Throws InputError if reading is to be given up. Called for every list that is read; whoever does something long
   /// with what was read calls it meanwhile.
@@ -123,6 +125,7 @@ class StateArchive {
 
   void takeMemory(std::size_t elements, std::size_t element_size);
   void number(double& value);
+  std::uint64_t nextNumber();
   std::uint64_t varint(std::uint64_t value);
   std::uint8_t byte(std::uint8_t value);
 
@@ -154,6 +157,12 @@ class StateArchive {
   std::string_view input_;
   KeepReading keep_reading_;
   std::string output_;
+  std::vector<std::uint64_t> numbers_;                      ///< all doubles that were read, as bits
+  std::string_view new_numbers_;                            ///< those that nothing repeats: planes of bytes
+  std::size_t next_new_ = 0;                                ///< that is still to be read
+  std::vector<std::uint64_t> written_new_;                  ///< as `new_numbers_`
+  std::unordered_map<std::uint64_t, std::size_t> last_at_;  ///< where a double was written last
+  std::size_t written_numbers_ = 0;
   int classes_ = kAnyClasses;
   std::size_t memory_ = kMostMemory;  ///< that is left: bytes may be much shorter than the values they stand for
 };

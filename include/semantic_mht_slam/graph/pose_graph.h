@@ -183,8 +183,9 @@ class PoseGraph {
 
   /// Everything that was added and estimated, so that a graph that reads it goes on to the last bit as the one that
   /// wrote it (see `StateArchive`). Reads only into an empty graph, else throws std::logic_error; throws InputError
-  /// also if the state was written with other sizes of windows or chunks.
-  void transfer(StateArchive& archive);
+  /// also if the state was written with other sizes of windows or chunks. Odometry of nodes that is as `expected` is
+  /// not written; whoever reads must expect the same.
+  void transfer(StateArchive& archive, const std::vector<PoseNode>& expected);
 
  private:
   class Impl;

@@ -46,6 +46,8 @@ struct OdometryModel {
   SystematicErrors systematic;
 };
 
+void transfer(StateArchive& archive, OdometryModel& model);
+
 /// How much a vehicle moved, all steps added up.
 struct Motion {
   double way_m = 0.0;

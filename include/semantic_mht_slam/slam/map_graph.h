@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,6 +74,7 @@ class MapGraph {
   void transfer(StateArchive& archive, const Map& map);
 
  private:
+  std::vector<PoseNode> expectedOdometry(const Map& map) const;
   PoseNode nodeOf(const Map& map, KeyframeId keyframe, const std::vector<Sighting>& sightings,
                   const OdometryModel& odometry);
   void regroup(const std::vector<std::vector<LandmarkId>>& changed);
@@ -82,6 +84,7 @@ class MapGraph {
   BackEndConfig config_;
   ClassTable classes_;
   PoseGraph graph_;
+  std::map<SubmapId, OdometryModel> odometry_;  ///< of submaps, how it was known to err at the end of each
   GraphStatus status_;
   std::vector<ClosureId> closure_of_factor_;
   ClosureId next_closure_{0};             ///< the first that was not looked at
