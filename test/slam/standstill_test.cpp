@@ -34,7 +34,7 @@ TEST(StandstillTest, DrivingOnIsLookedAtAgain) {
 
 TEST(StandstillTest, APoseSaysNothingNewAfterManyFramesFromThere) {
   Standstill standstill;
-  const Pose further(Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0});
+  const Pose further{Eigen::Quaterniond::Identity(), {0.2, 0.0, 0.0}};
   for (int i = 0; i < 299; ++i) standstill.add(Pose::identity());
   EXPECT_FALSE(standstill.holds(Pose::identity()));
   standstill.add(Pose::identity());
