@@ -92,17 +92,21 @@ std::vector<std::size_t> PlaceRecognizer::gated(std::size_t query, std::size_t e
   return result;
 }
 
-std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t query_index,
-                                                 const std::vector<std::size_t>& places) const {
-  std::vector<std::pair<double, std::size_t>> ranked;  // the most alike first
+PlaceRecognizer::Ranking PlaceRecognizer::mostAlike(const Place& query, const std::vector<std::size_t>& places) const {
+  Ranking ranked;
   for (const std::size_t i : places) {
     ranked.emplace_back(-descriptorSimilarity(query.descriptor, places_[i].descriptor), i);
   }
   const std::size_t count = std::min<std::size_t>(ranked.size(), config_.max_candidates);
   std::partial_sort(ranked.begin(), ranked.begin() + count, ranked.end());
   ranked.resize(count);
+  return ranked;
+}
+
+std::vector<PlaceMatch> PlaceRecognizer::compare(const Place& query, std::size_t query_index,
+                                                 const std::vector<std::size_t>& places) const {
   std::vector<PlaceMatch> matches;
-  for (const auto& [negative_score, i] : ranked) {
+  for (const auto& [negative_score, i] : mostAlike(query, places)) {
     PlaceMatch match;
     match.refusal = PlaceRefusal::kUnlikePlace;
     if (-negative_score >= config_.min_descriptor_score) match = verify(query, i);
@@ -268,22 +272,16 @@ void PlaceRecognizer::forgetOldMatches() {
   recent_.erase(std::remove_if(recent_.begin(), recent_.end(), is_old), recent_.end());
 }
 
-std::vector<PlaceMatch> PlaceRecognizer::locate(const Scene& scene, const std::vector<Pose>& T_map_keyframe) const {
-  if (T_map_keyframe.size() != places_.size()) {
-    throw std::invalid_argument("PlaceRecognizer: a pose of every keyframe is needed");
-  }
+std::vector<std::size_t> PlaceRecognizer::mostAlike(const Scene& scene) const {
   Keyframe keyframe;
   keyframe.scene = scene;
   std::vector<std::size_t> all(places_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  std::vector<PlaceMatch> matches = compare(makePlace(std::move(keyframe)), places_.size(), all);
-  refuseRivals(matches, T_map_keyframe);
-  if (!matches.empty() && passed(matches.front())) {
-    PlaceMatch& best = matches.front();
-    best.accepted = best.verification_score >= config_.lone_score * (1.0 + config_.far_factor);
-    if (!best.accepted) best.refusal = PlaceRefusal::kUnsupported;
+  std::vector<std::size_t> result;
+  for (const auto& [negative_score, i] : mostAlike(makePlace(std::move(keyframe)), all)) {
+    if (-negative_score >= config_.min_descriptor_score) result.push_back(i);
   }
-  return matches;
+  return result;
 }
 
 }  // namespace semantic_mht_slam

@@ -16,6 +16,7 @@
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 #include "semantic_mht_slam/models/usable_detection.h"
 #include "semantic_mht_slam/place/laplacian.h"
 #include "semantic_mht_slam/place/scene_accumulation.h"
@@ -117,13 +118,16 @@ class Scenes {
 
   Scene at(std::size_t frame) const {
     if (window_ == 0) return sceneOfFrame(detections_[frame], classes_);
-    std::vector<Detections> frames;
-    std::vector<Pose> T_base_frame;
-    for (std::size_t i = frame - std::min<std::size_t>(frame, window_); i <= frame; ++i) {
-      frames.push_back(detections_[i]);
-      T_base_frame.push_back(T_odom_base_[frame].inverse() * T_odom_base_[i]);
+    std::vector<SeenFrame> frames;
+    Motion since;
+    for (std::size_t i = frame;; --i) {
+      const Pose T_base_frame = T_odom_base_[frame].inverse() * T_odom_base_[i];
+      frames.push_back({detections_[i], T_base_frame, varianceOf(OdometryNoise{}, since)});
+      if (i == frame - std::min<std::size_t>(frame, window_)) break;
+      since = since + motionOf(T_odom_base_[i - 1].inverse() * T_odom_base_[i]);
     }
-    return accumulateScene(frames, T_base_frame, classes_);
+    std::reverse(frames.begin(), frames.end());
+    return accumulateScene(frames, classes_);
   }
 
  private:

@@ -40,28 +40,28 @@ bool Localizer::add(const Frame& frame, const Map& map, const LoopCloser& closer
     driven_ = driven_ + motionOf(window_.back().T_odom_base.inverse() * frame.T_odom_base);
   }
   window_.push_back(frame);
-  window_driven_m_.push_back(driven_.way_m);
-  while (driven_.way_m - window_driven_m_.front() > config_.window_m) {
+  window_driven_.push_back(driven_);
+  while (driven_.way_m - window_driven_.front().way_m > config_.window_m) {
     window_.pop_front();
-    window_driven_m_.pop_front();
+    window_driven_.pop_front();
   }
   if (driven_.way_m - attempted_m_ < config_.step_m) return false;
   attempted_m_ = driven_.way_m;
   if (is_located_ && (driven_ - fixed_).way_m > config_.lost_after_m) is_located_ = false;
-  const Scene seen = scene(closer.classes());
+  const Scene seen = scene(closer);
   if (seen.objects.size() < kMinObjects) return false;
   return is_located_ ? track(seen, map, closer) : search(seen, map, closer);
 }
 
-Scene Localizer::scene(const ClassTable& classes) const {
-  std::vector<Detections> frames;
-  std::vector<Pose> T_base_frame;
+Scene Localizer::scene(const LoopCloser& closer) const {
+  std::vector<SeenFrame> frames;
+  const OdometryModel& odometry = closer.odometry();
   const Pose T_base_odom = window_.back().T_odom_base.inverse();
-  for (const Frame& frame : window_) {
-    frames.push_back(frame.detections);
-    T_base_frame.push_back(T_base_odom * frame.T_odom_base);
+  for (std::size_t i = 0; i < window_.size(); ++i) {
+    frames.push_back({window_[i].detections, expectedStep(odometry, T_base_odom * window_[i].T_odom_base),
+                      varianceOf(odometry, driven_ - window_driven_[i])});
   }
-  return accumulateScene(frames, T_base_frame, classes, config_.merge_radius_m);
+  return accumulateScene(frames, closer.classes(), config_.merge_radius_m);
 }
 
 bool Localizer::agree(const Find& a, const Find& b) const {

@@ -149,14 +149,43 @@ std::vector<LoopClosureRecord> LoopCloser::revisits(const Map& map, const Closur
   return found;
 }
 
+std::vector<LoopCloser::Placing> LoopCloser::placingsOf(const Scene& scene, const Map& map) const {
+  const Scene asked = units_.toPlaces(scene);
+  const std::vector<RegistrationPoint> seen = registrationPoints(asked);
+  const RegistrationConfig registration = units_.toPlaces(registration_);
+  std::vector<Placing> placings;
+  for (const std::size_t place : places_.mostAlike(asked)) {
+    const KeyframeId keyframe = keyframe_of_place_[place];
+    const Scene around = units_.toPlaces(sceneAround(map, keyframe, config_.revisit));
+    for (const RegistrationMode& mode : align(registrationPoints(around), seen, std::nullopt, classes_, registration)) {
+      PlaceMatch match;
+      match.T_match_query = mode.T_a_b;
+      match.cov = mode.cov;
+      match = units_.fromPlaces(std::move(match));
+      placings.push_back({{keyframe, match.T_match_query, match.cov},
+                          map.T_map_keyframe(keyframe) * match.T_match_query,
+                          mode.log_evidence});
+    }
+  }
+  std::stable_sort(placings.begin(), placings.end(),
+                   [](const Placing& a, const Placing& b) { return a.log_evidence > b.log_evidence; });
+  return placings;
+}
+
 std::optional<FoundPlace> LoopCloser::locate(const Map& map, const Scene& scene) const {
-  const std::vector<PlaceMatch> matches = places_.locate(units_.toPlaces(scene), placePoses(map));
-  if (matches.empty()) return std::nullopt;
-  const PlaceMatch& best = matches.front();
-  // A match that passed every check but would not be believed alone is one of two that confirm each other.
-  if (!best.accepted && best.refusal != PlaceRefusal::kUnsupported) return std::nullopt;
-  const PlaceMatch found = units_.fromPlaces(best);
-  return FoundPlace{keyframe_of_place_[best.match], found.T_match_query, found.cov};
+  const std::vector<Placing> placings = placingsOf(scene, map);
+  if (placings.empty() || placings.front().log_evidence < config_.revisit.min_log_evidence) return std::nullopt;
+  const Placing& best = placings.front();
+  const double agree_m = units_.fromPlaces(config_.place.agree_m);
+  const auto isElsewhere = [&](const Placing& other) {
+    return (best.T_map_base.translation_m - other.T_map_base.translation_m).head<2>().norm() > agree_m ||
+           angularDistance(best.T_map_base.rotation, other.T_map_base.rotation) > config_.place.agree_rad;
+  };
+  const auto rival = std::find_if(placings.begin(), placings.end(), isElsewhere);
+  const bool is_ambiguous =
+      rival != placings.end() && best.log_evidence - rival->log_evidence < config_.revisit.min_log_margin;
+  if (is_ambiguous) return std::nullopt;
+  return best.place;
 }
 
 std::optional<FoundPlace> LoopCloser::findNear(const Map& map, const Scene& scene, const Pose& T_map_base,

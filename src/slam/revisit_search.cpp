@@ -135,6 +135,28 @@ std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m, double r
   return runsWithin(radius_m, position_m, map, map.keyframes().nextId()).size();
 }
 
+Scene sceneAround(const Map& map, KeyframeId centre, const RevisitConfig& config) {
+  const Eigen::Vector3d& centre_m = map.T_map_keyframe(centre).translation_m;
+  std::vector<KeyframeId> pass;
+  for (std::vector<KeyframeId>& run : runsWithin(0.5 * config.range_m, centre_m, map, map.keyframes().nextId())) {
+    if (run.front() <= centre && centre <= run.back()) pass = std::move(run);
+  }
+  const Pose T_centre_map = map.T_map_keyframe(centre).inverse();
+  Pass seen = makePass(map, pass);
+  Scene scene;
+  for (std::size_t i = 0; i < seen.points.size(); ++i) {
+    const RegistrationPoint& point = seen.points[i];
+    const Eigen::Matrix3d R = T_centre_map.rotation.toRotationMatrix();
+    SceneObject object;
+    object.position_m = T_centre_map * point.position_m;
+    object.cov_m2 = symmetric(R * point.cov_m2 * R.transpose());
+    object.class_index = point.class_index;
+    object.landmark = seen.ids[i];
+    scene.objects.push_back(object);
+  }
+  return scene;
+}
+
 std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const RegistrationPrior& prior,
                                          const ClassTable& classes, const RegistrationConfig& registration,
                                          const RevisitConfig& config) {

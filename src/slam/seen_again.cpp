@@ -13,7 +13,7 @@ constexpr double kGateMahalanobisSq = 11.34;  // 99 % in three dimensions
 
 struct Passes {
   std::vector<MixtureLandmark> present;  ///< first seen by the present pass, map frame
-  std::vector<MixtureLandmark> earlier;  ///< not seen by it
+  std::vector<MixtureLandmark> earlier;  ///< known before it, whether it saw them again or not
 };
 
 Passes passesOf(const Map& map, const MapGraph& graph, const ClassTable& classes, SubmapId here,
@@ -35,7 +35,10 @@ Passes passesOf(const Map& map, const MapGraph& graph, const ClassTable& classes
     if (is_earlier(submap)) earlier.push_back(submap);
     if (!is_present(submap)) continue;
     visit(submap, [&](MixtureLandmark landmark) {
-      if (is_earlier(landmark.first_submap)) return;
+      if (is_earlier(landmark.first_submap)) {
+        passes.earlier.push_back(std::move(landmark));
+        return;
+      }
       reach_m = std::max(reach_m, (landmark.position.mean_m - here_m).norm());
       passes.present.push_back(std::move(landmark));
     });

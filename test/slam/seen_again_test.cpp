@@ -97,6 +97,16 @@ TEST(SeenAgainTest, AnotherClassAndWhatMayHaveMovedAreOthers) {
   EXPECT_TRUE(seenAgain(map).empty());
 }
 
+TEST(SeenAgainTest, WhatThePresentPassKnowsAndWhatItTakesForNewMayBeTheSame) {
+  Map map(0.5);
+  addPass(map, {landmark(1, {5.0, 1.0, 0.0}), landmark(2, {9.0, 1.0, 0.0})});
+  addPass(map, {landmark(11, {5.0, 1.1, 0.0}), landmark(21, {5.0, 1.0, 0.0})});
+  map.addPairs(tie(map), {{21, 1}});
+  const auto pairs = seenAgain(map);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs[0], SameLandmark(11, 1));
+}
+
 TEST(SeenAgainTest, OnlyAClosureThatHoldsTies) {
   Map map(0.5);
   addPass(map, {landmark(1, {5.0, 1.0, 0.0})});

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/common/pose.h"
@@ -50,9 +51,9 @@ class PlaceRecognizer {
   std::vector<PlaceMatch> process(std::vector<Keyframe> keyframes, const std::vector<Pose>& T_map_keyframe,
                                   const SubmapSummary& submap = {});
 
-  /// Where a scene is among all keyframes, without any prior: its descriptor is compared with that of every keyframe.
-  /// Candidates by falling score, `query` being the number of keyframes; the first is accepted if it stands alone.
-  std::vector<PlaceMatch> locate(const Scene& scene, const std::vector<Pose>& T_map_keyframe) const;
+  /// The keyframes most like a scene by descriptor, wherever they are, the most alike first: at most `max_candidates`,
+  /// none below `min_descriptor_score`.
+  std::vector<std::size_t> mostAlike(const Scene& scene) const;
 
   /// The state without the keyframes, which are given as they were added (with their scenes): into an empty recogniser,
   /// or out of one (see `StateArchive`).
@@ -68,6 +69,10 @@ class PlaceRecognizer {
     PairDescriptor descriptor;
   };
 
+  using Ranking =
+      std::vector<std::pair<double, std::size_t>>;  ///< likeness, negative, and number of a place; best first
+
+  Ranking mostAlike(const Place& query, const std::vector<std::size_t>& places) const;
   Place makePlace(Keyframe keyframe) const;
   void add(std::vector<Keyframe> keyframes, std::size_t poses);
   std::vector<std::size_t> gated(std::size_t query, std::size_t earlier, const std::vector<Pose>& T_map_keyframe) const;

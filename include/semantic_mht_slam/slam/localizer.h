@@ -60,7 +60,7 @@ class Localizer {
     Pose T_map_odom;
   };
 
-  Scene scene(const ClassTable& classes) const;
+  Scene scene(const LoopCloser& closer) const;
   bool search(const Scene& scene, const Map& map, const LoopCloser& closer);
   bool track(const Scene& scene, const Map& map, const LoopCloser& closer);
   bool agree(const Find& a, const Find& b) const;
@@ -68,7 +68,7 @@ class Localizer {
 
   LocalizerConfig config_;
   std::deque<Frame> window_;
-  std::deque<double> window_driven_m_;
+  std::deque<Motion> window_driven_;
   Motion driven_;
   double attempted_m_ = 0.0;
   Motion fixed_;                ///< driven at the last fix

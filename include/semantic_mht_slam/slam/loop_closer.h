@@ -70,7 +70,9 @@ class LoopCloser {
   /// driven; `ahead` was driven since the newest keyframe.
   SubmapPrediction predict(const Map& map, const Pose& T_map_submap, double tied_at_m, const Motion& ahead) const;
 
-  /// Where a scene is in the map, by its objects alone; needs a second find that agrees. Empty if it is not recognised.
+  /// Where a scene is in the map, by its objects alone: it is laid onto what was seen around the keyframes most like
+  /// it, and one way to do so has to stand out as a revisit's has (`RevisitConfig`). Needs a second find that agrees.
+  /// Empty if it is not recognised.
   std::optional<FoundPlace> locate(const Map& map, const Scene& scene) const;
 
   /// Where a scene is in the map near an expected pose, `motion` after it was known within `stddev_m`; empty if that is
@@ -83,10 +85,20 @@ class LoopCloser {
 
   const ClassTable& classes() const { return classes_; }
 
+  const OdometryModel& odometry() const { return odometry_; }
+
   /// Into an empty one, or out of one (see `StateArchive`).
   void transfer(StateArchive& archive, const Map& map);
 
  private:
+  /// One way to lay a scene onto what was seen around a keyframe.
+  struct Placing {
+    FoundPlace place;
+    Pose T_map_base;
+    double log_evidence = 0.0;
+  };
+
+  std::vector<Placing> placingsOf(const Scene& scene, const Map& map) const;
   std::vector<Pose> placePoses(const Map& map) const;
   bool isSearched(KeyframeId keyframe) const;
   std::vector<LoopClosureRecord> closeByHypotheses(const Map& map, const ClosureQuery& query) const;

@@ -20,6 +20,7 @@ class PlaceUnits {
   Scene toPlaces(Scene scene) const;
   Keyframe toPlaces(Keyframe keyframe) const;
   RegistrationConfig toPlaces(RegistrationConfig config) const;
+  double fromPlaces(double length_m) const { return length_m * factor_; }
   PlaceMatch fromPlaces(PlaceMatch match) const;
 
  private:

@@ -26,6 +26,9 @@ void describe(RevisitConfig& config, Fields& fields);
 /// from above.
 std::size_t passesAt(const Map& map, const Eigen::Vector3d& position_m, double radius_m);
 
+/// What the pass that a keyframe belongs to saw around it, in the keyframe's axes.
+Scene sceneAround(const Map& map, KeyframeId centre, const RevisitConfig& config);
+
 /// Lays a scene onto what each pass saw near the pose that `prior` expects. One record for each pass that it might fit;
 /// the query is no keyframe.
 std::vector<LoopClosureRecord> findInMap(const Map& map, const Scene& scene, const RegistrationPrior& prior,

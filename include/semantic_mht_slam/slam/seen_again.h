@@ -11,9 +11,10 @@ namespace semantic_mht_slam {
 
 /// Landmarks that the present pass saw first, each with the one of an earlier pass that stands where it stands: static,
 /// of the same class, nearer than `pair_distance_m` on the plane and than their covariances and that of the closure
-/// `tie` explain, and no other candidate for either. A closure pairs only what one keyframe saw; the solution that it
-/// leads to shows the others to be the same. The present pass is less than `recent_submaps` submaps around the one that
-/// the closure comes from, and what lies before that is earlier.
+/// `tie` explain, and no other candidate for either. The present pass may have seen that one, too, from elsewhere;
+/// `Identity` keeps apart what a frame shows side by side. A closure pairs only what one keyframe saw; the solution
+/// that it leads to shows the others to be the same. The present pass is less than `recent_submaps` submaps around the
+/// one that the closure comes from, and what lies before that is earlier.
 std::vector<SameLandmark> landmarksSeenAgain(const Map& map, const MapGraph& graph, const ClassTable& classes,
                                              const LoopClosureRecord& tie, std::size_t recent_submaps,
                                              double pair_distance_m);
