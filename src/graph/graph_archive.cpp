@@ -54,7 +54,7 @@ bool isAs(const PoseNode& expected, const OdometryStep& step, const SharedErrors
 /// The odometry of each node of a graph, without its costs.
 void transferOdometry(StateArchive& archive, const std::vector<PoseNode>& expected, std::vector<OdometryStep>& odometry,
                       GraphState& graph) {
-  const std::size_t count = archive.count(odometry.size());
+  const std::size_t count = archive.count<OdometryStep>(odometry.size());
   if (count != graph.nodes.size()) StateArchive::fail("a graph with more nodes than odometry");
   if (archive.isReading()) odometry.assign(count, {});
   for (std::size_t i = 0; i < count; ++i) {
