@@ -64,7 +64,9 @@ void toSinglePrecision(double& value) {
 }
 
 void toSinglePrecision(geometry_msgs::Point& point) {
-  for (double* value : {&point.x, &point.y, &point.z}) toSinglePrecision(*value);
+  toSinglePrecision(point.x);
+  toSinglePrecision(point.y);
+  toSinglePrecision(point.z);
 }
 
 nav_msgs::Path inSinglePrecision(nav_msgs::Path path) {
@@ -78,7 +80,6 @@ nav_msgs::Path inSinglePrecision(nav_msgs::Path path) {
 
 SemanticMap inSinglePrecision(SemanticMap map) {
   for (Landmark& landmark : map.landmarks) {
-    toSinglePrecision(landmark.position);
     for (double& value : landmark.class_probs) toSinglePrecision(value);
     for (double& value : landmark.covariance) toSinglePrecision(value);
     for (double* value :
