@@ -12,10 +12,10 @@
 namespace semantic_mht_slam {
 namespace {
 
-// Maps of drives grow to 1.1 to 1.7 times the file, and so does what is made of them in memory.
+// The content of maps of drives is 1.1 to 1.7 times the file, the lists that are made of it 4.1 times.
 constexpr std::uint64_t kMostGrowth = 4;
 constexpr std::uint64_t kSmall = 8U << 20U;  // of which a small bag may hold as much as it wants
-constexpr std::uint64_t kMostMade = 3;
+constexpr std::uint64_t kMostMade = 12;
 constexpr std::uint64_t kSmallMade = 32U << 20U;
 constexpr std::uint64_t kMostHeader = 1U << 20U;
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
