@@ -17,7 +17,7 @@ FuzzTarget trajectoryTarget() {
   };
   return {"trajectory",
           run,
-          {"1 0 0 0 0 1 0 0 0 0 1 0\n", "0.1 1 2 3 0 0 0 1\n# t x y z\n0.2 1 2 3 0 0 0 1\n", "0.1\n1e-1\n",
+          {"1 0 0 0 0 1 0 0 0 0 1 0\n", "0.1 1 2 3 0 0 0 1\n# t x y z\n0.2 1 2 3 0 0 0 1\n", "0.1\n2e-1\n",
            "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n"}};
 }
 

@@ -12,11 +12,14 @@
 
 #include "semantic_mht_slam/common/pose_cov.h"
 #include "semantic_mht_slam/common/state_archive.h"
+#include "semantic_mht_slam/map/ids.h"
+#include "semantic_mht_slam/models/odometry_model.h"
 #include "semantic_mht_slam/slam/slam_state.h"
 
 namespace semantic_mht_slam {
 
-/// The section 'graph' of a map's state by its fields, so that a test can change any one of them.
+/// The pose graph at the beginning of the section 'graph' of a map's state by its fields, so that a test can change any
+/// one of them. What follows it in the section is not read, and not written.
 struct GraphSection {
   struct Measured {  ///< a relative pose with the square root of its information
     Pose pose;
@@ -28,6 +31,15 @@ struct GraphSection {
     PoseCov cov = PoseCov::Zero();
     void transfer(StateArchive& archive) { archive(T_previous_node, cov); }
   };
+  struct Odometry {
+    bool is_known = false;  ///< from the keyframes
+    Step step;
+    SharedErrors shared = SharedErrors::Zero();
+    void transfer(StateArchive& archive) {
+      archive(is_known);
+      if (!is_known) archive(step, shared);
+    }
+  };
   struct Prior {
     Step place;
     Measured cost;
@@ -38,8 +50,7 @@ struct GraphSection {
     std::vector<std::int64_t> landmarks;
     std::vector<int> loops;
     std::vector<Prior> priors;
-    SharedErrors shared = SharedErrors::Zero();
-    void transfer(StateArchive& archive) { archive(block, landmarks, loops, priors, shared); }
+    void transfer(StateArchive& archive) { archive(block, landmarks, loops, priors); }
   };
   struct Sighting {
     int node = 0;
@@ -78,13 +89,14 @@ struct GraphSection {
     void transfer(StateArchive& archive) { archive(link, is_settled); }
   };
 
+  std::map<SubmapId, OdometryModel> odometry_of_submap;
   int window_nodes = 0;
   int chunk_nodes = 0;
-  std::vector<Step> odometry;
   std::vector<Node> nodes;
   std::map<std::int64_t, Landmark> landmarks;
   std::map<std::int64_t, std::int64_t> group_of;
   std::vector<Loop> loops;
+  std::vector<Odometry> odometry;
   std::vector<bool> fits_odometry;
   std::vector<std::vector<bool>> agrees;
   int reviewed = 0;
@@ -99,29 +111,24 @@ struct GraphSection {
   double news = 0.0;
   bool is_pending = false;
   int in_hierarchy = 0;
-  std::string others;  ///< the rest of the section, as it is
+  std::vector<std::optional<int>> reported;
 
   explicit GraphSection(const std::string& bytes) {
     StateArchive reading(bytes);
     transfer(reading);
-    const std::string own = written();
-    if (bytes.compare(0, own.size(), own) != 0) throw std::logic_error("the graph's section has other fields");
-    others = bytes.substr(own.size());
   }
 
-  std::string bytes() const { return written() + others; }
-
- private:
-  void transfer(StateArchive& archive) {
-    archive(window_nodes, chunk_nodes, odometry, nodes, landmarks, group_of, loops);
-    archive(fits_odometry, agrees, reviewed, hubs, links, active, loop_links, landmark_links, touched);
-    archive(prior_links, bend, news, is_pending, in_hierarchy);
-  }
-
-  std::string written() const {
+  std::string bytes() const {
     StateArchive archive;
     GraphSection(*this).transfer(archive);
     return archive.written();
+  }
+
+ private:
+  void transfer(StateArchive& archive) {
+    archive(odometry_of_submap, window_nodes, chunk_nodes, nodes, landmarks, group_of, loops, odometry);
+    archive(fits_odometry, agrees, reviewed, hubs, links, active, loop_links, landmark_links, touched);
+    archive(prior_links, bend, news, is_pending, in_hierarchy, reported);
   }
 };
 

@@ -18,6 +18,7 @@
 #include <Eigen/Core>
 
 #include "semantic_mht_slam/common/gaussian.h"
+#include "semantic_mht_slam/common/matrix_form.h"
 #include "semantic_mht_slam/common/stamped_pose.h"
 
 namespace semantic_mht_slam {
@@ -72,6 +73,7 @@ class StateArchive {
 
   /// Throws InputError unless everything was read.
   void requireEnd() const;
+
   /// Bytes that what is read may still take.
   std::size_t memoryLeft() const { return memory_; }
 
@@ -140,11 +142,6 @@ class StateArchive {
     if (static_cast<std::int64_t>(value) != decoded) fail("a number is out of range");
   }
 
-  /// What of a square matrix is written.
-  enum class Form : std::uint8_t { kFull, kZero, kDiagonal, kSymmetric, kUpper };
-
-  template <class Matrix>
-  static Form formOf(const Matrix& matrix);
   template <class Matrix>
   void resize(Matrix& values);
   template <class Matrix>
@@ -153,6 +150,7 @@ class StateArchive {
   static constexpr Eigen::Index kMaxSide = 4096;
   static constexpr int kAnyClasses = -1;
   static constexpr std::size_t kMostMemory = std::size_t{1} << 30U;  // where nobody says less
+
   bool is_reading_ = false;
   std::string_view input_;
   KeepReading keep_reading_;
@@ -249,25 +247,6 @@ void transfer(StateArchive& archive, std::map<Key, Value>& map) {
 }
 
 template <class Matrix>
-StateArchive::Form StateArchive::formOf(const Matrix& matrix) {
-  bool lower = false;
-  bool upper = false;
-  bool diagonal = false;
-  bool symmetric = true;
-  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-    diagonal = diagonal || matrix(row, row) != 0.0;
-    for (Eigen::Index col = row + 1; col < matrix.cols(); ++col) {
-      upper = upper || matrix(row, col) != 0.0;
-      lower = lower || matrix(col, row) != 0.0;
-      symmetric = symmetric && matrix(row, col) == matrix(col, row);
-    }
-  }
-  if (!lower && !upper) return diagonal ? Form::kDiagonal : Form::kZero;
-  if (symmetric) return Form::kSymmetric;
-  return lower ? Form::kFull : Form::kUpper;
-}
-
-template <class Matrix>
 void StateArchive::resize(Matrix& values) {
   Eigen::Index rows = values.rows();
   Eigen::Index cols = values.cols();
@@ -287,20 +266,20 @@ void StateArchive::resize(Matrix& values) {
 template <class Matrix>
 void StateArchive::matrix(Matrix& values) {
   if (Matrix::RowsAtCompileTime == Eigen::Dynamic || Matrix::ColsAtCompileTime == Eigen::Dynamic) resize(values);
-  Form form = Form::kFull;
+  MatrixForm form = MatrixForm::kFull;
   if (values.rows() == values.cols() && values.rows() > 1) {
     if (!is_reading_) form = formOf(values);
     (*this)(form);
-    if (form > Form::kUpper) fail("a matrix has no known form");
+    if (form > MatrixForm::kUpper) fail("a matrix has no known form");
     if (is_reading_) values.setZero();
   }
   for (Eigen::Index col = 0; col < values.cols(); ++col) {
     for (Eigen::Index row = 0; row < values.rows(); ++row) {
       const bool is_below = row > col;
-      if (form == Form::kZero || (form == Form::kDiagonal && row != col)) continue;
-      if (is_below && (form == Form::kUpper || form == Form::kSymmetric)) continue;
+      if (form == MatrixForm::kZero || (form == MatrixForm::kDiagonal && row != col)) continue;
+      if (is_below && (form == MatrixForm::kUpper || form == MatrixForm::kSymmetric)) continue;
       (*this)(values(row, col));
-      if (form == Form::kSymmetric && is_reading_) values(col, row) = values(row, col);
+      if (form == MatrixForm::kSymmetric && is_reading_) values(col, row) = values(row, col);
     }
   }
 }
