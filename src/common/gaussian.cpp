@@ -7,7 +7,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093454836;
 
 }  // namespace
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "semantic_mht_slam/evaluation/statistics.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -34,10 +36,6 @@ std::int64_t equalPairs(std::vector<std::array<std::int64_t, N>> keys) {
     begin = end;
   }
   return pairs;
-}
-
-double share(std::int64_t part, std::int64_t whole) {
-  return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(1, whole));
 }
 
 PairwiseScore pairwiseScore(const std::vector<Assignment>& assignments) {

@@ -8,13 +8,13 @@
 #include <string>
 
 #include "semantic_mht_slam/evaluation/planar_grid.h"
+#include "semantic_mht_slam/evaluation/revisit.h"
+#include "semantic_mht_slam/evaluation/statistics.h"
 
 namespace semantic_mht_slam {
 namespace {
 
 constexpr double kRightWithin_m = 2.0;
-constexpr double kRevisitRadius_m = 3.0;
-constexpr std::size_t kRevisitMinFrames = 200;
 constexpr std::int64_t kBlockFrames = 10;
 constexpr std::int64_t kCoveredWithinBlocks = 10;
 constexpr double kPositiveBelow_m = 3.0;
@@ -56,10 +56,6 @@ std::set<std::int64_t> revisitedBlocks(const std::vector<Pose>& T_world_base) {
 bool isCovered(std::int64_t block, const std::set<std::int64_t>& closed_blocks) {
   const auto nearest = closed_blocks.lower_bound(block - kCoveredWithinBlocks);
   return nearest != closed_blocks.end() && *nearest <= block + kCoveredWithinBlocks;
-}
-
-double share(std::int64_t part, std::int64_t whole) {
-  return static_cast<double>(part) / static_cast<double>(std::max<std::int64_t>(1, whole));
 }
 
 struct LabelledScore {

@@ -19,7 +19,7 @@ struct Moments {
   Eigen::Matrix3d cross_m2 = Eigen::Matrix3d::Zero();
 };
 
-Eigen::Vector3d mean(const Points& points) {
+Eigen::Vector3d centroid(const Points& points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points) sum += point;
   return sum / static_cast<double>(points.size());
@@ -31,8 +31,8 @@ Moments moments(const Points& source_m, const Points& target_m) {
                                 std::to_string(target_m.size()));
   }
   Moments result;
-  result.source_mean_m = mean(source_m);
-  result.target_mean_m = mean(target_m);
+  result.source_mean_m = centroid(source_m);
+  result.target_mean_m = centroid(target_m);
   for (std::size_t i = 0; i < source_m.size(); ++i) {
     result.cross_m2 += (target_m[i] - result.target_mean_m) * (source_m[i] - result.source_mean_m).transpose();
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "semantic_mht_slam/evaluation/planar_grid.h"
+#include "semantic_mht_slam/evaluation/revisit.h"
 #include "semantic_mht_slam/evaluation/statistics.h"
 
 namespace semantic_mht_slam {
@@ -19,8 +20,6 @@ constexpr double kRadToDeg = 57.29577951308232;
 constexpr std::size_t kStretchStride = 10;  // the stretches begin at every tenth frame
 constexpr std::array<double, 8> kStretchLengths_m = {100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 800.0};
 constexpr std::size_t kRevisitStride = 5;
-constexpr std::size_t kRevisitMinFrames = 200;
-constexpr double kRevisitRadius_m = 3.0;
 constexpr std::size_t kMaxRevisits = std::size_t{1} << 24;
 
 void requireComparable(const Trajectory& truth, const Trajectory& estimate) {

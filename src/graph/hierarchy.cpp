@@ -13,7 +13,6 @@ namespace {
 constexpr double kQuietGapPerHub = 0.24;
 constexpr double kBendRadius_m = 10.0;  // a bend by 1 rad counts like 10 m
 constexpr double kWorthRepairing_m = 2e-3;
-constexpr double kSwitchOffFactor = 3.0;  // of the gate
 constexpr int kRepairMargin = 2;          // nodes on either side of a bent piece that are optimised with it
 
 /// Relative pose between the frames of two hubs from one between nodes that hang on them; with the covariance of its

@@ -9,7 +9,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kSwitchOffFactor = 3.0;  // of the gate: a loop closure that is in must fit worse to go than to come
 constexpr long kCliqueSteps = 500;
 
 }  // namespace

@@ -11,6 +11,9 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
+/// Of the gate: a loop closure that is in must fit worse to go than to come.
+constexpr double kSwitchOffFactor = 3.0;
+
 /// Decides which loop closures of a growing graph take part: pairwise consistency among the newest ones (see
 /// `findConsistentLoops`), a bounded number, so that the time does not grow; older decisions stand unless the optimised
 /// estimate speaks against them.

@@ -5,15 +5,15 @@
 #include <memory>
 
 #include "semantic_mht_slam/common/log_math.h"
+#include "semantic_mht_slam/mapping/detection_rate.h"
 
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kIterations = 20;
+constexpr int kPropagations = 20;
 constexpr double kConverged = 1e-4;
 constexpr double kLargestLogOdds = 50.0;
-constexpr double kLeastProb = 1e-6;
-constexpr double kLowDetectionProb = 0.01;
+constexpr double kLeastExistenceProb = 1e-6;
 
 /// Its place is that of the measurement, which says nothing of whether it is there.
 bool isOnlySighting(const HypothesisLandmark& landmark) {
@@ -49,7 +49,7 @@ void findFreedom(const std::vector<std::vector<AssociationOdds>>& odds, int land
   std::vector<double> asked_of(claims.size());
   std::vector<Message> messages;
   double change = rows.empty() ? 0.0 : 1.0;
-  for (int iteration = 0; iteration < kIterations && change > kConverged; ++iteration) {
+  for (int iteration = 0; iteration < kPropagations && change > kConverged; ++iteration) {
     messages.clear();
     for (const std::size_t i : rows) {
       double all = 1.0;
@@ -99,7 +99,7 @@ AssociationPosterior::AssociationPosterior(const MapperConfig& config, const Ass
     tracked->updated_at_m = seen_at_m;
     tracked->is_from_earlier_submap = true;  // seen from elsewhere
     Existence existence;
-    existence.log_odds = logit(std::clamp(landmark.existence_prob, kLeastProb, 1.0 - kLeastProb));
+    existence.log_odds = logit(std::clamp(landmark.existence_prob, kLeastExistenceProb, 1.0 - kLeastExistenceProb));
     map_.landmarks.push_back({std::move(tracked), existence});
   }
 }

@@ -16,12 +16,12 @@ constexpr double kCauchySigma = 2.0;
 constexpr int kPoseSize = 4;  // x, y, z, heading
 constexpr int kEntries = 8;   // two knots of the range bias, two of the height bias, pose
 constexpr int kPoseEntry = kEntries - kPoseSize;
-constexpr double kMinRange_m = 1.0;
+constexpr double kLeastBiasRange_m = 1.0;
 constexpr double kGaugeStddev = 1e-3;
-constexpr double kLeastVariance = 1e-10;
+constexpr double kLeastStepVariance = 1e-10;
 
 /// An equation: landmark = point + J x, with the weight of its 3x3 information. Unknowns by rising index.
-struct Row {
+struct BiasRow {
   Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
   std::array<int, kEntries> index{};
   std::array<int, kEntries> place{};  ///< of the unknowns among those of the landmark
@@ -32,7 +32,7 @@ struct Row {
 
 /// All that show one landmark.
 struct LandmarkRows {
-  std::vector<Row> rows;
+  std::vector<BiasRow> rows;
   std::vector<int> unknowns;  ///< by rising index, without the many that the landmark has nothing to do with
 };
 
@@ -75,7 +75,7 @@ class StretchEquations {
     for (const auto& [id, observations] : by_landmark) {
       if (static_cast<int>(observations.size()) < noise_.min_observations) continue;
       const Eigen::Vector3d landmark_m = medianPosition(observations);
-      std::vector<Row>& rows = landmarks_.emplace_back().rows;
+      std::vector<BiasRow>& rows = landmarks_.emplace_back().rows;
       for (const BiasObservation* observation : observations) rows.push_back(row(*observation, landmark_m));
       noteUnknowns(landmarks_.back());
     }
@@ -97,14 +97,14 @@ class StretchEquations {
 
   /// Range and line of sight are those to the landmark: were they the detection's own, its noise would be in both sides
   /// of the equation, and a bias that grows with the range would make it smaller.
-  Row row(const BiasObservation& observation, const Eigen::Vector3d& landmark_m) const {
+  BiasRow row(const BiasObservation& observation, const Eigen::Vector3d& landmark_m) const {
     const Pose& T = stretch_.T_stretch_base[static_cast<std::size_t>(observation.keyframe)];
     const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
     const Eigen::Vector3d lever_m = R * observation.position_m;
     const Eigen::Vector3d ray_m = landmark_m - T.translation_m;
-    const double range_m = std::max(ray_m.norm(), kMinRange_m);
+    const double range_m = std::max(ray_m.norm(), kLeastBiasRange_m);
     const Eigen::Vector3d sight = ray_m / range_m;
-    Row result;
+    BiasRow result;
     result.point_m = lever_m + T.translation_m;
     result.information = (R * observation.cov_m2 * R.transpose()).inverse();
     for (int i = 0; i < kPoseSize; ++i) result.index[kPoseEntry + i] = pose(observation.keyframe) + i;
@@ -131,10 +131,10 @@ class StretchEquations {
 
   static void noteUnknowns(LandmarkRows& landmark) {
     std::vector<int>& unknowns = landmark.unknowns;
-    for (const Row& row : landmark.rows) unknowns.insert(unknowns.end(), row.index.begin(), row.index.end());
+    for (const BiasRow& row : landmark.rows) unknowns.insert(unknowns.end(), row.index.begin(), row.index.end());
     std::sort(unknowns.begin(), unknowns.end());
     unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
-    for (Row& row : landmark.rows) {
+    for (BiasRow& row : landmark.rows) {
       for (std::size_t a = 0; a < kEntries; ++a) {
         const auto found = std::lower_bound(unknowns.begin(), unknowns.end(), row.index[a]);
         row.place[a] = static_cast<int>(found - unknowns.begin());
@@ -150,7 +150,7 @@ class StretchEquations {
     const auto count = static_cast<Eigen::Index>(used.size());
     Eigen::Matrix<double, Eigen::Dynamic, 3> cross = Eigen::MatrixXd::Zero(count, 3);
     const Eigen::Vector3d origin_m = rows.front().point_m;  // keeps the numbers small
-    for (const Row& row : rows) {
+    for (const BiasRow& row : rows) {
       const Eigen::Matrix3d W = row.weight * row.information;
       const Eigen::Matrix<double, kEntries, 3> JtW = row.J.transpose() * W;
       const Eigen::Matrix<double, kEntries, kEntries> JtWJ = JtW * row.J;
@@ -204,7 +204,7 @@ class StretchEquations {
       J.col(first + 1).head<2>() << step.y(), -step.x();
       J(2, first + 2) = -distance_m;
     }
-    const Eigen::Vector4d information = stepVariance(k, distance_m).cwiseMax(kLeastVariance).cwiseInverse();
+    const Eigen::Vector4d information = stepVariance(k, distance_m).cwiseMax(kLeastStepVariance).cwiseInverse();
     const Eigen::Matrix<double, kColumns, kColumns> JtWJ = J.transpose() * information.asDiagonal() * J;
     for (int a = 0; a < kColumns; ++a) {
       for (int b = 0; b < kColumns; ++b) {
@@ -223,11 +223,11 @@ class StretchEquations {
     return {planar_m2, planar_m2, variance.up_m2, variance.heading_rad2};
   }
 
-  static void reweigh(std::vector<Row>& rows, const Eigen::VectorXd& x) {
+  static void reweigh(std::vector<BiasRow>& rows, const Eigen::VectorXd& x) {
     std::vector<Eigen::Vector3d> points_m;
     Eigen::Matrix3d total = Eigen::Matrix3d::Zero();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Row& row : rows) {
+    for (const BiasRow& row : rows) {
       Eigen::Vector3d point_m = row.point_m;
       for (int a = 0; a < kEntries; ++a) point_m += row.J.col(a) * x[row.index[a]];
       total += row.weight * row.information;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMinPriorStddev_m = 0.05;
 constexpr double kStepFactor = 0.25;  // a change of bias from knot to knot, in range_stddev of the class
-constexpr double kMinRange_m = 0.1;
+constexpr double kLeastDirectionRange_m = 0.1;
 
 void addStepPrior(Eigen::MatrixXd& information, int a, int b, double stddev) {
   const double weight = 1.0 / (stddev * stddev);
@@ -171,7 +171,7 @@ CentroidBiasEstimate CentroidBias::at(ClassIndex class_index, double range_m) co
 
 Eigen::Matrix3d CentroidBias::uncertainty(ClassIndex class_index, const Eigen::Vector3d& position_m) const {
   const double range_m = position_m.norm();
-  if (!config_.enabled || range_m < kMinRange_m) return Eigen::Matrix3d::Zero();
+  if (!config_.enabled || range_m < kLeastDirectionRange_m) return Eigen::Matrix3d::Zero();
   const CentroidBiasEstimate bias = at(class_index, range_m);
   const Eigen::Vector3d ray = position_m / range_m;
   const double stddev_m = stddev_m_[static_cast<std::size_t>(class_index)];
@@ -183,10 +183,10 @@ Eigen::Matrix3d CentroidBias::uncertainty(ClassIndex class_index, const Eigen::V
 
 Detection CentroidBias::corrected(const Detection& detection) const {
   const double range_m = detection.position_m.norm();
-  if (!config_.enabled || range_m < kMinRange_m) return detection;
+  if (!config_.enabled || range_m < kLeastDirectionRange_m) return detection;
   const CentroidBiasEstimate bias = at(detection.class_index, range_m);
   Detection result = detection;
-  result.position_m *= std::max(kMinRange_m, range_m - bias.range_m) / range_m;
+  result.position_m *= std::max(kLeastDirectionRange_m, range_m - bias.range_m) / range_m;
   result.position_m.z() -= bias.height_m;
   if (detection.cov_m2) result.cov_m2 = *detection.cov_m2 + uncertainty(detection.class_index, detection.position_m);
   return result;

@@ -6,7 +6,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLeastProb = 1e-3;  // of a birth, and of none
+constexpr double kLeastBirthProb = 1e-3;  // of a birth, and of none
 
 }  // namespace
 
@@ -48,7 +48,7 @@ double ClutterModel::birthProb(ClassIndex class_index, const Eigen::Vector3d& po
   const double class_prob = (of_class.births + prior * birth_prob_) / (of_class.births + of_class.clutter + prior);
   const Counts& counts = of_cell_[cellOf(class_index, position_m)];
   const double prob = (counts.births + prior * class_prob) / (counts.births + counts.clutter + prior);
-  return std::clamp(prob, kLeastProb, birth_prob_);
+  return std::clamp(prob, kLeastBirthProb, birth_prob_);
 }
 
 void ClutterModel::addFrames(std::size_t frames) {

@@ -7,13 +7,9 @@
 #include "semantic_mht_slam/mapping/hypothesis_merging.h"
 #include "semantic_mht_slam/mapping/hypothesis_pruning.h"
 
+#include "landmark_selection.h"
+
 namespace semantic_mht_slam {
-namespace {
-
-constexpr int kSettledObservations = 3;  // landmarks that may correct the pose
-constexpr double kHuberSigma = 2.0;
-
-}  // namespace
 
 Measurement inSubmap(Measurement measurement, const Pose& T_submap_base, const PoseOffset* offset) {
   const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
@@ -89,7 +85,7 @@ PoseOffset MultiHypothesisTree::offsetAfter(const FrameInterpretation& interpret
         measurement.wander_variance_per_m * (input.driven_m - landmark.updated_at_m);
     observations.push_back(observation);
   }
-  return semantic_mht_slam::updated(parent.offset, observations, kHuberSigma);
+  return semantic_mht_slam::updated(parent.offset, observations, kOffsetHuberSigma);
 }
 
 void MultiHypothesisTree::expand(std::size_t leaf, const TreeInput& input,

@@ -6,8 +6,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kSettledObservations = 3;
-
 bool isSettled(const HypothesisLandmark& landmark) {
   return !landmark->is_expected && landmark->observations >= kSettledObservations && landmark.existence.log_odds > 0.0;
 }

@@ -6,6 +6,8 @@
 
 namespace semantic_mht_slam {
 
+constexpr int kSettledObservations = 3;  ///< of a landmark that may correct a pose
+
 /// The landmarks that are seen for sure (three observations, likelier than not) nearest to a place, within a radius, at
 /// most `count`; nearest first.
 std::vector<const TrackedLandmark*> nearestLandmarks(const MapHypothesis& leaf, const Eigen::Vector3d& center_m,

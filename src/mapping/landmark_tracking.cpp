@@ -10,7 +10,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLowDetectionProb = 0.01;     // below this nothing is expected
 constexpr double kMinRange_m = 0.5;            // nearer detections have no direction
 constexpr double kMaxLogExistenceOdds = 20.0;  // what hundreds of frames behind a house cannot take away
 

@@ -19,7 +19,6 @@ namespace {
 
 constexpr double kGateMahalanobisSq = 11.3;
 constexpr double kMaxGate = 1.0 / 15.0;  // of the radius
-constexpr double kHuberSigma = 2.0;
 constexpr double kMaxWithheld = 3.0;    // nats of the evidence that the first look held back, at the end
 constexpr double kFinal = 1.0 / 120.0;  // of the radius: prior of the last refinement, around the hypothesis's offset
 constexpr double kFinal_rad = 0.02;
@@ -212,7 +211,7 @@ void MapBranching::follow(const std::vector<std::pair<int, const Measurement*>>&
     observation.cov_m2.diagonal().array() += registration_.noise_floor_m * registration_.noise_floor_m;
     observations.push_back(observation);
   }
-  leaf.map_offset = updated(*leaf.map_offset, observations, kHuberSigma);
+  leaf.map_offset = updated(*leaf.map_offset, observations, kOffsetHuberSigma);
   const EarlierMapPlacement placement = placementBy(*leaf.map_offset);
   for (HypothesisLandmark& landmark : leaf.landmarks) {
     if (!landmark->is_expected) continue;

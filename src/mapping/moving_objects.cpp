@@ -15,11 +15,11 @@ namespace {
 constexpr double kAccelerationPerSpeed = 0.3;  // 1/s: deviations of acceleration and of speed
 constexpr double kOutlierProb = 0.1;
 constexpr double kOutlierFactor = 3.0;
-constexpr double kGateMahalanobisSq = 16.0;
+constexpr double kTrackGateMahalanobisSq = 16.0;
 constexpr int kMostMissed = 10;       // frames that a track survives without a sighting
 constexpr int kTellingSightings = 5;  // of tracks that say how many move
 constexpr double kRateSamples = 4.0;  // that the prior counts for
-constexpr double kMostLogOdds = 20.0;
+constexpr double kMostTrackLogOdds = 20.0;
 constexpr double kMostLogOddsOfNext = 3.0;  // that an object goes on as it did: one that stood may drive off
 constexpr double kAnywhere = 2.0;           // gates that what has no track may be in
 
@@ -119,7 +119,7 @@ std::optional<MovingObjects::Likelihoods> MovingObjects::compare(const Track& pr
   if (std::min(of_standing.norm(), of_moving.norm()) > max_gate_m_) return std::nullopt;
   const Planar standing = evaluateMixture(of_standing, predicted.place_cov_m2, sighting.cov_m2);
   const Planar moving = evaluateMixture(of_moving, predicted.motion_cov.topLeftCorner<2, 2>(), sighting.cov_m2);
-  if (std::min(standing.mahalanobis_sq, moving.mahalanobis_sq) > kGateMahalanobisSq) return std::nullopt;
+  if (std::min(standing.mahalanobis_sq, moving.mahalanobis_sq) > kTrackGateMahalanobisSq) return std::nullopt;
   return Likelihoods{standing.log_density, moving.log_density};
 }
 
@@ -127,7 +127,7 @@ void MovingObjects::update(const Likelihoods& likelihoods, const MovableSighting
   updateBy<2>(sighting.position_m, sighting.cov_m2, predicted.place_m, predicted.place_cov_m2);
   updateBy<4>(sighting.position_m, sighting.cov_m2, predicted.motion, predicted.motion_cov);
   predicted.log_odds =
-      std::clamp(predicted.log_odds + likelihoods.moving - likelihoods.standing, -kMostLogOdds, kMostLogOdds);
+      std::clamp(predicted.log_odds + likelihoods.moving - likelihoods.standing, -kMostTrackLogOdds, kMostTrackLogOdds);
   predicted.missed = 0;
   ++predicted.sightings;
 }

@@ -12,10 +12,10 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kIterations = 4;
-constexpr double kLeastVariance = 1e-12;
+constexpr int kStretchIterations = 4;
+constexpr double kLeastErrorVariance = 1e-12;
 constexpr double kNoiseFreedom = 10.0;   // residuals that the detector's noise as it is known counts for
-constexpr double kMostDeviations = 4.0;  // of the odometry on average; more is a wrong association
+constexpr double kMostMeanDeviations = 4.0;  // of the odometry on average; more is a wrong association
 constexpr double kMostExcess = 9.0;      // beyond three deviations associations are wrong
 
 /// Variances of the step errors under a model.
@@ -30,7 +30,7 @@ Eigen::VectorXd priorVariance(const std::vector<MotionVariance>& steps, bool is_
       variance.segment<kPoseNumbers>(at) << step.up_m2, step.tilt_rad2, step.tilt_rad2;
     }
   }
-  return variance.cwiseMax(kLeastVariance);
+  return variance.cwiseMax(kLeastErrorVariance);
 }
 
 std::vector<MotionVariance> variancesOf(const std::vector<Motion>& motion, const OdometryNoise& noise) {
@@ -88,7 +88,7 @@ class PlanarStretch {
 
   /// False if the steps would have to be far from the odometry's.
   bool solve() {
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < kStretchIterations; ++i) {
       const Equations seen = equationsOf<2>(rows(), kPoseNumbers * steps_);
       const Eigen::MatrixXd E = jacobian();
       const Eigen::VectorXd weights = variance_.cwiseInverse();
@@ -102,7 +102,7 @@ class PlanarStretch {
       for (Eigen::Index k = 0; k < steps_; ++k) poses_[static_cast<std::size_t>(k) + 1] += x.segment<3>(3 * k);
     }
     const Eigen::VectorXd deviations_sq = errors().cwiseAbs2().cwiseQuotient(variance_);
-    return deviations_sq.mean() < kMostDeviations * kMostDeviations;
+    return deviations_sq.mean() < kMostMeanDeviations * kMostMeanDeviations;
   }
 
   StepInformation information() const {
@@ -169,7 +169,7 @@ class PlanarStretch {
         const Eigen::Matrix2d R = turned(k);
         const Eigen::Vector2d lever_m = R * (level * seen->position_m).head<2>();
         const Eigen::Matrix3d cov = level * seen->cov_m2 * level.transpose();
-        Row<2> row;
+        TrackRow<2> row;
         row.keyframe = seen->keyframe;
         row.point_m = poses_[k].head<2>() + lever_m;
         row.J << 1.0, 0.0, -lever_m.y(), 0.0, 1.0, lever_m.x();
@@ -208,7 +208,7 @@ StepInformation verticalInformation(const OdometryStretch& stretch, const Odomet
       const Pose& T = stretch.T_stretch_base[static_cast<std::size_t>(seen->keyframe)];
       const Eigen::Matrix3d R = T.rotation.toRotationMatrix();
       const Eigen::Vector3d lever_m = R * seen->position_m;
-      Row<1> row;
+      TrackRow<1> row;
       row.keyframe = seen->keyframe;
       row.point_m << lever_m.z() + T.translation_m.z();
       row.J << 1.0, lever_m.y(), -lever_m.x();

@@ -16,7 +16,7 @@ constexpr int kPoseNumbers = 3;  ///< numbers a pose or a step
 
 /// landmark = point + J x: a detection carried to the stretch's frame by the pose of its keyframe, whose error is x.
 template <int kDim>
-struct Row {
+struct TrackRow {
   int keyframe = 0;
   Eigen::Matrix<double, kDim, 1> point_m;
   Eigen::Matrix<double, kDim, kPoseNumbers> J;
@@ -35,14 +35,14 @@ struct Equations {
 };
 
 template <int kDim>
-using Landmarks = std::vector<std::vector<Row<kDim>>>;
+using Landmarks = std::vector<std::vector<TrackRow<kDim>>>;
 
 constexpr double kTrackCauchySigma = 2.0;
 constexpr double kLeastRange_m = 1e-3;
 
 /// Weighted mean of the points of a landmark under Cauchy weights; the weights go into the rows.
 template <int kDim>
-Eigen::Matrix<double, kDim, 1> robustMean(std::vector<Row<kDim>>& rows) {
+Eigen::Matrix<double, kDim, 1> robustMean(std::vector<TrackRow<kDim>>& rows) {
   Eigen::Matrix<double, kDim, 1> mean;
   for (int pass = 0; pass < 2; ++pass) {
     Eigen::Matrix<double, kDim, kDim> total = Eigen::Matrix<double, kDim, kDim>::Zero();
@@ -57,14 +57,14 @@ Eigen::Matrix<double, kDim, 1> robustMean(std::vector<Row<kDim>>& rows) {
       rows[i].weight = 1.0 / (1.0 + d.dot(rows[i].information * d) / (kDim * kTrackCauchySigma * kTrackCauchySigma));
     }
   }
-  for (Row<kDim>& row : rows) row.information *= row.weight;
+  for (TrackRow<kDim>& row : rows) row.information *= row.weight;
   return mean;
 }
 
 /// How far a point is shown from where it is by a unit of each error that all ranges have in common; heights tell
 /// nothing of these. The line of sight is that to the landmark: the detection's own has its noise in it.
 template <int kDim>
-Eigen::Matrix<double, kDim, kRangeErrors> rangeEffect(const Row<kDim>& row,
+Eigen::Matrix<double, kDim, kRangeErrors> rangeEffect(const TrackRow<kDim>& row,
                                                       const Eigen::Matrix<double, kDim, 1>& landmark_m) {
   Eigen::Matrix<double, kDim, kRangeErrors> effect = Eigen::Matrix<double, kDim, kRangeErrors>::Zero();
   if (kDim == 1) return effect;
@@ -75,14 +75,14 @@ Eigen::Matrix<double, kDim, kRangeErrors> rangeEffect(const Row<kDim>& row,
 
 /// One landmark, its position eliminated (Schur complement).
 template <int kDim>
-void addLandmark(std::vector<Row<kDim>> rows, Equations& all) {
+void addLandmark(std::vector<TrackRow<kDim>> rows, Equations& all) {
   const Eigen::Matrix<double, kDim, 1> mean_m = robustMean<kDim>(rows);
   Eigen::Matrix<double, kDim, kDim> total = Eigen::Matrix<double, kDim, kDim>::Zero();
   std::map<int, Eigen::Matrix<double, kPoseNumbers, kDim>> cross;
   Eigen::Matrix<double, kRangeErrors, kDim> cross_bias = Eigen::Matrix<double, kRangeErrors, kDim>::Zero();
   Eigen::Matrix<double, kDim, 1> sum = Eigen::Matrix<double, kDim, 1>::Zero();
   const Eigen::Index at_bias = all.g.size() - kRangeErrors;
-  for (const Row<kDim>& row : rows) {
+  for (const TrackRow<kDim>& row : rows) {
     const Eigen::Matrix<double, kDim, 1> d = row.point_m - mean_m;
     total += row.information;
     sum += row.information * d;

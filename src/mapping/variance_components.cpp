@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kStretches = 10;  // that are gone through again
 constexpr int kPasses = 4;
 constexpr double kLargestStep = 1.0;
-constexpr double kMostDeviations = 3.0;  // of an error from what the others make of it
-constexpr double kLeastVariance = 1e-14;
+constexpr double kMostErrorDeviations = 3.0;  // of an error from what the others make of it
+constexpr double kLeastComponentVariance = 1e-14;
 constexpr double kMostUnsure = 1.0;  // variance of a logarithm that adds to the variance itself
 
 }  // namespace
@@ -42,7 +42,7 @@ void VarianceComponents::add(ErrorInformation stretch) {
 
 bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) const {
   const Eigen::MatrixXd& H = stretch.matrix;
-  const Eigen::VectorXd variance = (stretch.design * log_variance_.array().exp().matrix()).cwiseMax(kLeastVariance);
+  const Eigen::VectorXd variance = (stretch.design * log_variance_.array().exp().matrix()).cwiseMax(kLeastComponentVariance);
   Eigen::MatrixXd posterior = H;
   posterior.diagonal() += variance.cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> factor(posterior);
@@ -61,7 +61,7 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
   response.rightCols(nuisances) = stretch.coupling - H * solved;
   const Eigen::VectorXd u = V_inverse_y - response * effect_;
   const Eigen::MatrixXd parts = stretch.design * log_variance_.array().exp().matrix().asDiagonal();
-  const Eigen::VectorXd most = kMostDeviations * kMostDeviations * V_inverse.diagonal().cwiseMax(0.0);
+  const Eigen::VectorXd most = kMostErrorDeviations * kMostErrorDeviations * V_inverse.diagonal().cwiseMax(0.0);
   score.gradient = 0.5 * parts.transpose() * (u.cwiseAbs2().cwiseMin(most) - V_inverse.diagonal());
   score.fisher = 0.5 * parts.transpose() * V_inverse.cwiseAbs2() * parts;
   score.effect_information.resize(effects + nuisances, effects + nuisances);

@@ -27,14 +27,14 @@ Eigen::Matrix3d classCov(const Eigen::Vector3d& position_m, const ClassInfo& inf
 }
 
 /// A detection in the base frame, with what the odometry may be off by between its frame and there.
-struct Sighting {
+struct SceneSighting {
   SceneObject object;
   Eigen::Matrix3d drift_m2 = Eigen::Matrix3d::Zero();
 };
 
-Sighting sightingOf(const SceneObject& seen, const SeenFrame& frame) {
+SceneSighting sightingOf(const SceneObject& seen, const SeenFrame& frame) {
   const Eigen::Matrix3d R = frame.T_base_frame.rotation.toRotationMatrix();
-  Sighting sighting{seen, Eigen::Matrix3d::Zero()};
+  SceneSighting sighting{seen, Eigen::Matrix3d::Zero()};
   sighting.object.position_m = frame.T_base_frame * seen.position_m;
   sighting.object.cov_m2 = symmetric(R * seen.cov_m2 * R.transpose());
   const double planar_m2 = std::max(frame.drift.along_m2, frame.drift.across_m2);
@@ -57,7 +57,7 @@ struct Cluster {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();
 
-  void add(const Sighting& seen, std::size_t frame) {
+  void add(const SceneSighting& seen, std::size_t frame) {
     const Eigen::Matrix3d information = (seen.object.cov_m2 + seen.drift_m2).inverse();
     weight += information;
     weighted += information * seen.object.position_m;
@@ -110,7 +110,7 @@ class Accumulation {
   explicit Accumulation(double min_merge_radius_m) : min_merge_radius_m_(min_merge_radius_m) {}
 
   /// What one frame shows are so many objects: each detection goes to another one, the nearest first.
-  void add(const std::vector<Sighting>& seen, std::size_t frame) {
+  void add(const std::vector<SceneSighting>& seen, std::size_t frame) {
     std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
     for (std::size_t i = 0; i < seen.size(); ++i) {
       for (std::size_t k = 0; k < clusters_.size(); ++k) {
@@ -202,7 +202,7 @@ Scene sceneOfFrame(const Detections& detections, const ClassTable& classes) {
 Scene accumulateScene(const std::vector<SeenFrame>& frames, const ClassTable& classes, double min_merge_radius_m) {
   Accumulation accumulation(min_merge_radius_m);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    std::vector<Sighting> seen;
+    std::vector<SceneSighting> seen;
     for (const SceneObject& object : sceneOfFrame(frames[i].detections, classes).objects) {
       seen.push_back(sightingOf(object, frames[i]));
     }

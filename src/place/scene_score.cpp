@@ -163,8 +163,8 @@ double sceneScore(const Scene& a, const Scene& b, const SceneScoreConfig& config
 
 double sceneScoreBound(const Scene& a, const Scene& b, const SceneScoreConfig& config) {
   if (config.formula == PairScoreFormula::kAsPrinted) return 1.0;
-  constexpr double kRounding = 1e-9;
-  return std::min(1.0, betterWayRound(a, b, config, bestOfEach).score + kRounding);
+  constexpr double kScoreRounding = 1e-9;
+  return std::min(1.0, betterWayRound(a, b, config, bestOfEach).score + kScoreRounding);
 }
 
 }  // namespace semantic_mht_slam

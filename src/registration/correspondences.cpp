@@ -14,10 +14,10 @@ namespace {
 constexpr double kSignatureRadius_m = 30.0;
 constexpr double kSignatureBin_m = 2.0;
 constexpr int kSignatureBins = 15;
-constexpr std::size_t kCandidatesPerDetection = 4;
+constexpr std::size_t kCliqueCandidates = 4;
 constexpr int kMaxCliques = 3;
 constexpr double kMinDistance_m = 1.0;
-constexpr double kToleranceSigmas = 1.5;
+constexpr double kCliqueToleranceSigmas = 1.5;
 constexpr long kCliqueSteps = 3000;
 
 /// What stands around a point: counts by class and distance, each spread over the two nearest bins, unit length.
@@ -57,7 +57,7 @@ bool keepsDistance(const RegistrationProblem& problem, const Correspondence& a, 
   const double of_landmarks_m = (la.position_m - lb.position_m).head<2>().norm();
   if (of_detections_m < kMinDistance_m || of_landmarks_m < kMinDistance_m) return false;
   const double stddev_m = std::sqrt(variance_m2(da) + variance_m2(db) + variance_m2(la) + variance_m2(lb));
-  return std::abs(of_detections_m - of_landmarks_m) < kToleranceSigmas * stddev_m;
+  return std::abs(of_detections_m - of_landmarks_m) < kCliqueToleranceSigmas * stddev_m;
 }
 
 }  // namespace
@@ -106,7 +106,7 @@ PlanarState motionOf(const RegistrationProblem& problem, const std::vector<Corre
 }
 
 std::vector<PlanarState> guessByCliques(const RegistrationProblem& problem) {
-  std::vector<Correspondence> left = findCorrespondences(problem, kCandidatesPerDetection);
+  std::vector<Correspondence> left = findCorrespondences(problem, kCliqueCandidates);
   std::vector<PlanarState> guesses;
   for (int round = 0; round < kMaxCliques && left.size() > 2; ++round) {
     BitGraph graph(static_cast<int>(left.size()));

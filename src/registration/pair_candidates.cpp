@@ -6,10 +6,11 @@
 
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/gaussian.h"
+
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093453;
 constexpr double kImpossible = -std::numeric_limits<double>::infinity();
 
 /// log P(seen | true) of two classes. Only classes that are both static or both movable are mistaken for each other.

@@ -15,8 +15,8 @@ constexpr double kMinLength_m = 3.0;
 constexpr double kMaxLength_m = 45.0;
 constexpr double kMaxStddev_m = 0.9;  // of a point that votes: others give no heading
 constexpr std::size_t kMaxVoters = 44;
-constexpr double kToleranceSigmas = 1.5;
-constexpr double kWidest_m = 2.0 * kToleranceSigmas * kMaxStddev_m;
+constexpr double kLengthToleranceSigmas = 1.5;
+constexpr double kWidest_m = 2.0 * kLengthToleranceSigmas * kMaxStddev_m;
 constexpr double kSharpest_m = 0.3;  // added to the tolerance of a pair: the finest votes are not much finer than that
 
 /// Two points, directed from the lower class to the higher.
@@ -144,7 +144,7 @@ std::vector<PlanarState> guessByPairs(const RegistrationProblem& problem, int co
     for (std::size_t i = begin; i < of_landmarks.size(); ++i) {
       const Segment& other = of_landmarks[i];
       if (other.class_pair != segment.class_pair || other.length_m > segment.length_m + kWidest_m) break;
-      const double tolerance_m = kToleranceSigmas * std::sqrt(segment.variance_m2 + other.variance_m2);
+      const double tolerance_m = kLengthToleranceSigmas * std::sqrt(segment.variance_m2 + other.variance_m2);
       if (std::abs(other.length_m - segment.length_m) <= tolerance_m) votes.add(segment, other, tolerance_m);
     }
   }

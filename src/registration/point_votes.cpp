@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "semantic_mht_slam/common/gaussian.h"
+
 #include "first_guesses.h"
 #include "vote_grid.h"
 
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093453;
 
 /// The part of a candidate that counts on the grid.
 struct PointVote {

@@ -15,7 +15,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093453;
 constexpr double kOpenHeight_m = 1.0;                 // standard deviation of the height without a prior
 constexpr double kOpenCells = 3.0, kOpenTurns = 5.0;  // how much coarser the grid is then: pairs of points vote
 

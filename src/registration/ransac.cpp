@@ -15,7 +15,7 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Model = pcl::SampleConsensusModelRegistration<pcl::PointXYZ>;
 
-constexpr int kCandidatesPerDetection = 3;
+constexpr int kRansacCandidates = 3;
 constexpr int kRounds = 3;
 constexpr int kIterations = 600;
 constexpr double kTolerance_m = 0.8;
@@ -45,7 +45,7 @@ std::vector<int> consensus(const RegistrationProblem& problem, const std::vector
 }  // namespace
 
 std::vector<PlanarState> guessByRansac(const RegistrationProblem& problem) {
-  std::vector<Correspondence> left = findCorrespondences(problem, kCandidatesPerDetection);
+  std::vector<Correspondence> left = findCorrespondences(problem, kRansacCandidates);
   std::vector<PlanarState> guesses;
   for (int round = 0; round < kRounds && left.size() > 3; ++round) {
     const std::vector<int> inliers = consensus(problem, left);

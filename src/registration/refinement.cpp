@@ -7,10 +7,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/gaussian.h"
+
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kLogTwoPi = 1.8378770664093453;
 constexpr int kCoarseSteps = 1;
 constexpr int kMaxSteps = 10;
 constexpr double kConverged_m = 1e-3;  // the pairs give the pose, more exactly

@@ -5,13 +5,13 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr std::size_t kKept = 50;  // steps or frames
+constexpr std::size_t kLastSteps = 50;  // steps or frames
 constexpr std::size_t kEnough = 20;
 constexpr std::size_t kEnoughCompared = 3;
 constexpr double kDriven_m = 5.0;  // between two frames that are compared
-constexpr double kSame_m = 0.5;
+constexpr double kSamePlace_m = 0.5;
 constexpr double kFastest_m_per_s = 100.0;  // of anything on the ground
-constexpr double kFarthest_m = 1000.0;      // of anything that a robot's sensor detects
+constexpr double kFarthestDetection_m = 1000.0;      // of anything that a robot's sensor detects
 constexpr double kHigh_m = 3.0;
 constexpr double kOnEnd = 1.5;  // times as high as far
 constexpr double kMost = 0.7;   // of the objects
@@ -19,7 +19,7 @@ constexpr double kFew = 0.3;
 
 void keep(double value, std::deque<double>& values) {
   values.push_back(value);
-  if (values.size() > kKept) values.pop_front();
+  if (values.size() > kLastSteps) values.pop_front();
 }
 
 double medianOf(const std::deque<double>& values, std::size_t enough) {
@@ -34,7 +34,7 @@ double medianOf(const std::deque<double>& values, std::size_t enough) {
 double shareNear(const std::vector<Eigen::Vector3d>& points_m, const std::vector<Eigen::Vector3d>& others_m) {
   const auto isNear = [&](const Eigen::Vector3d& point_m) {
     return std::any_of(others_m.begin(), others_m.end(),
-                       [&](const Eigen::Vector3d& other_m) { return (point_m - other_m).norm() < kSame_m; });
+                       [&](const Eigen::Vector3d& other_m) { return (point_m - other_m).norm() < kSamePlace_m; });
   };
   const auto near = std::count_if(points_m.begin(), points_m.end(), isNear);
   return static_cast<double>(near) / static_cast<double>(points_m.size());
@@ -47,7 +47,7 @@ bool InputOddities::isOdometryInMillimetres() const {
 }
 
 bool InputOddities::areObjectsInMillimetres() const {
-  return range_m > kFarthest_m;
+  return range_m > kFarthestDetection_m;
 }
 
 bool InputOddities::areObjectsOnEnd() const {

@@ -16,7 +16,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr std::uint32_t kPublisherQueue = 10;
+constexpr std::uint32_t kObjectsQueue = 10;
 constexpr double kWatchdogPeriod_s = 5.0;
 
 /// Runs `convert`; what it throws is told with its topic.
@@ -34,9 +34,9 @@ auto onTopic(const std::string& topic, const Convert& convert) -> decltype(conve
 ObjectExtractor::ObjectExtractor(const ros::NodeHandle& handle, ObjectExtractorSetup setup)
     : handle_(handle),
       setup_(std::move(setup)),
-      objects_publisher_(handle_.advertise<SemanticObjectArray>("objects", kPublisherQueue)),
+      objects_publisher_(handle_.advertise<SemanticObjectArray>("objects", kObjectsQueue)),
       markers_publisher_(
-          handle_.advertise<visualization_msgs::MarkerArray>("markers/extracted_objects", kPublisherQueue)) {
+          handle_.advertise<visualization_msgs::MarkerArray>("markers/extracted_objects", kObjectsQueue)) {
   if (setup_.config.source == LabelSource::kImage) {
     subscribeToImages();
   } else {

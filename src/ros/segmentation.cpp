@@ -13,7 +13,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr std::uint32_t kPublisherQueue = 2;
+constexpr std::uint32_t kImageQueue = 2;
 
 sensor_msgs::Image blankMessage(const std_msgs::Header& header, const LabelImage& labels, const std::string& encoding,
                                 std::uint32_t bytes_per_pixel) {
@@ -66,8 +66,8 @@ Segmentation::Segmentation(const ros::NodeHandle& handle, const SegmentationNode
     : handle_(handle),
       labelled_(loadLabelledClasses(config.label_map)),
       network_(config.network),
-      labels_publisher_(handle_.advertise<sensor_msgs::Image>("label_image", kPublisherQueue)),
-      preview_publisher_(handle_.advertise<sensor_msgs::Image>("label_preview", kPublisherQueue)) {
+      labels_publisher_(handle_.advertise<sensor_msgs::Image>("label_image", kImageQueue)),
+      preview_publisher_(handle_.advertise<sensor_msgs::Image>("label_preview", kImageQueue)) {
   image_subscriber_ =
       handle_.subscribe<sensor_msgs::Image>("image", static_cast<std::uint32_t>(config.queue_size),
                                             [this](const sensor_msgs::ImageConstPtr& image) { segment(*image); });

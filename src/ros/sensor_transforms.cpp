@@ -10,8 +10,8 @@ namespace semantic_mht_slam {
 namespace {
 
 // Of a fixed sensor, between two look-ups: more than rounding, less than any calibration tells.
-constexpr double kSame_m = 1e-6;
-constexpr double kSame_rad = 1e-6;
+constexpr double kStill_m = 1e-6;
+constexpr double kStill_rad = 1e-6;
 constexpr std::size_t kMaxAncestors = 1000;  // tf with a circle
 
 std::optional<Pose> lookUp(const tf2::BufferCore& transforms, const std::string& target, const std::string& source,
@@ -117,7 +117,7 @@ SensorTransforms::Seen& SensorTransforms::note(const std::string& frame, const P
                                                const ros::Time& time) {
   Seen& seen = seen_.try_emplace(frame, Seen{T_base_sensor, time, false, false}).first->second;
   const Pose step = seen.T_base_sensor.inverse() * T_base_sensor;
-  if (step.translation_m.norm() > kSame_m || logRotation(step.rotation).norm() > kSame_rad) seen.moves = true;
+  if (step.translation_m.norm() > kStill_m || logRotation(step.rotation).norm() > kStill_rad) seen.moves = true;
   seen.T_base_sensor = T_base_sensor;
   return seen;
 }

@@ -18,10 +18,6 @@ InputQueue::Clock::duration inWallTime(double seconds) {
   return std::chrono::duration_cast<InputQueue::Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-double wallSeconds() {
-  return ros::WallTime::now().toSec();
-}
-
 }  // namespace
 
 SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private_handle, const SystemConfig& config,
@@ -200,12 +196,12 @@ void SlamNode::handle(const SemanticObjectArray& message) {
     ++estimator_.objects_while_paused;
     return;
   }
-  objects_gate_.hold(message, gate_, wallSeconds(), estimator_.refused);
+  objects_gate_.hold(message, gate_, ros::WallTime::now().toSec(), estimator_.refused);
   if (!gate_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
 }
 
 void SlamNode::retryObjects() {
-  while (auto frame = objects_gate_.next(gate_, latestStamp(), wallSeconds(), estimator_.refused)) {
+  while (auto frame = objects_gate_.next(gate_, latestStamp(), ros::WallTime::now().toSec(), estimator_.refused)) {
     plausibility_.add(*frame);
     slam_->addDetections(frame->stamp, std::move(frame->detections));
     publisher_.publishFrame(*slam_, live_.get());

@@ -11,10 +11,6 @@ constexpr std::uint32_t kSubscriberQueue = 1000;  // a burst until the callback 
 constexpr double kOverdue_s = 0.05;               // of the worker, after which the pose goes out without it
 constexpr Stamp kFarAhead = 60LL * 1000000000LL;
 
-double wallSeconds() {
-  return ros::WallTime::now().toSec();
-}
-
 }  // namespace
 
 void SlamNode::subscribe() {
@@ -46,7 +42,7 @@ void SlamNode::receive(const nav_msgs::OdometryConstPtr& message, const std::str
     const std::lock_guard<std::mutex> lock(status_mutex_);
     const ros::Time now = ros::Time::now();
     odometry_monitor_.arrived(toStamp(message->header.stamp), now.isZero() ? std::nullopt : std::optional(toStamp(now)),
-                              wallSeconds());
+                              ros::WallTime::now().toSec());
     odometry_gaps_.arrived(publisher, message->header.seq);
     unhandled_.push_back({message, ros::WallTime::now()});
     if (unhandled_.size() > static_cast<std::size_t>(config_.node.queue_size)) unhandled_.pop_front();
@@ -76,7 +72,7 @@ void SlamNode::publishOverduePose() {
 void SlamNode::receive(const SemanticObjectArrayConstPtr& message, const std::string& publisher) {
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);
-    objects_monitor_.arrived(toStamp(message->header.stamp), odometry_monitor_.status(0.0).stamp, wallSeconds());
+    objects_monitor_.arrived(toStamp(message->header.stamp), odometry_monitor_.status(0.0).stamp, ros::WallTime::now().toSec());
     objects_gaps_.arrived(publisher, message->header.seq);
   }
   queue_.push(message);

@@ -9,7 +9,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kPeriod_s = 5.0;
+constexpr double kBetweenWarnings_s = 5.0;
 constexpr std::size_t kMostKinds = 1000;  // texts hold what others send: bounded memory
 
 }  // namespace
@@ -20,7 +20,7 @@ void ThrottledWarnings::warn(const std::string& kind, const std::string& text) {
   if (last_.size() >= kMostKinds) last_.clear();
   ros::WallTime& last = last_[key];  // by wall time: a clock that stands still is one of the things to warn about
   const ros::WallTime now = ros::WallTime::now();
-  if (now - last < ros::WallDuration(kPeriod_s)) return;
+  if (now - last < ros::WallDuration(kBetweenWarnings_s)) return;
   last = now;
   ROS_WARN_STREAM(text);
 }

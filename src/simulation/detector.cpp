@@ -13,7 +13,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kMinRange_m = 1.0;
 constexpr double kClutterHeight_m = -0.7;  // mean and deviation in the base frame, between road and eye level
 constexpr double kClutterHeightStddev_m = 0.5;
@@ -173,7 +172,7 @@ class SimulatedDetector {
     const Eigen::Vector3d measured = position_m + measurementError(classes_[town_class], position_m, rng);
     const TownClass label = confused(town_class, rng);
     if (!rng.bernoulli(config_.split_prob)) return add(label, measured, id, result);
-    const double angle = rng.uniform(-kPi, kPi);
+    const double angle = rng.uniform(-M_PI, M_PI);
     const double half = 0.5 * rng.uniform(0.0, config_.split_distance_m);
     const Eigen::Vector3d offset(half * std::cos(angle), half * std::sin(angle), 0.0);
     add(label, measured + offset, id, result);

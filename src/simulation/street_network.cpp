@@ -7,7 +7,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// A street of the full grid. `line` is the number of its row or column, `place` its number on that line.
 struct GridStreet {
@@ -19,10 +18,10 @@ struct GridStreet {
 Terrain makeTerrain(const StreetNetworkConfig& config, Rng rng) {
   Terrain terrain;
   for (Terrain::Wave& wave : terrain.waves) {
-    const double direction = rng.uniform(0.0, 2.0 * kPi);
+    const double direction = rng.uniform(0.0, 2.0 * M_PI);
     const double wavelength = config.hill_length_m * rng.uniform(1.0, 2.5);
-    wave.wave_vector_rad_per_m = 2.0 * kPi / wavelength * Eigen::Vector2d(std::cos(direction), std::sin(direction));
-    wave.phase_rad = rng.uniform(0.0, 2.0 * kPi);
+    wave.wave_vector_rad_per_m = 2.0 * M_PI / wavelength * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+    wave.phase_rad = rng.uniform(0.0, 2.0 * M_PI);
     wave.amplitude_m = config.hill_height_m / static_cast<double>(terrain.waves.size());
   }
   return terrain;
@@ -58,7 +57,7 @@ std::vector<Eigen::Vector2d> makeCenterLine(const Eigen::Vector2d& from, const E
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= count; ++i) {
     const double fraction = static_cast<double>(i) / count;
-    const double sine = std::sin(kPi * fraction);
+    const double sine = std::sin(M_PI * fraction);
     points.push_back(from + fraction * (to - from) + bend_m * sine * sine * left);
   }
   return points;

@@ -6,6 +6,8 @@
 
 namespace semantic_mht_slam {
 
+constexpr double kLogTwoPi = 1.8378770664093454836;
+
 /// Normal distribution over R^3: mean in metres, covariance in square metres.
 struct Gaussian3 {
   Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();

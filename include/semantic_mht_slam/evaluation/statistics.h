@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace semantic_mht_slam {
@@ -13,5 +14,8 @@ double standardDeviation(const std::vector<double>& values);
 
 /// The middle value, or the mean of the two in the middle.
 double median(std::vector<double> values);
+
+/// Part of a whole; 0 of nothing.
+double share(std::int64_t part, std::int64_t whole);
 
 }  // namespace semantic_mht_slam

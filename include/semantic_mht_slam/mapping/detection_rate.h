@@ -13,6 +13,8 @@ namespace semantic_mht_slam {
 
 class StateArchive;
 
+constexpr double kLowDetectionProb = 0.01;  ///< below this nothing is expected
+
 /// Detections that did not come: negative evidence.
 struct DetectionConfig {
   bool missed_detections = true;

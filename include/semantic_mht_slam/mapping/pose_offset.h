@@ -38,6 +38,8 @@ struct OffsetObservation {
   Eigen::Matrix3d cov_m2;      ///< of the residual, without the offset's part
 };
 
+constexpr double kOffsetHuberSigma = 2.0;  ///< of hypotheses' offsets, in the submap and in the earlier map
+
 /// Kalman update of the offset by all assigned detections of a frame, with Huber weights beyond `huber_sigma`
 /// deviations. Without observations, or if the result is not finite, the offset stays as it was.
 PoseOffset updated(const PoseOffset& offset, const std::vector<OffsetObservation>& observations, double huber_sigma);
