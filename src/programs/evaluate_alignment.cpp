@@ -21,7 +21,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr const char* kUsage =
+constexpr const char* kAlignmentUsage =
     "A frame against an earlier map after drift: the share of wrong or missed associations among detections that have "
     "a\n"
     "counterpart in the map of one earlier pass, for growing offsets of the frame.\n"
@@ -30,7 +30,7 @@ constexpr const char* kUsage =
     "N]\n"
     "           [--set key=value ...] [--json] [--output DIR]\n";
 
-struct Options {
+struct AlignmentOptions {
   std::string dataset_path;
   std::string objects;
   std::string classes_path;
@@ -173,7 +173,7 @@ void requireUsable(const Dataset& dataset, const std::string& objects) {
   }
 }
 
-po::options_description describe(Options& values) {
+po::options_description describe(AlignmentOptions& values) {
   po::options_description options("options");
   options.add_options()("dataset", po::value(&values.dataset_path)->required(), "folder with poses.txt")(
       "objects", po::value(&values.objects)->default_value("objects.csv"), "detections")(
@@ -192,8 +192,8 @@ po::options_description describe(Options& values) {
 }  // namespace
 
 int evaluateAlignment(const std::vector<std::string>& arguments) {
-  Options options;
-  if (!parseOrHelp(arguments, kUsage, describe(options))) return 0;
+  AlignmentOptions options;
+  if (!parseOrHelp(arguments, kAlignmentUsage, describe(options))) return 0;
   if (options.frames_step == 0) throw InputError("--frames-step must be positive");
   const RegistrationConfig config = readConfig(options.settings);
   const ClassTable classes = readClassTable(options.classes_path);

@@ -13,7 +13,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr const char* kUsage =
+constexpr const char* kAssociationUsage =
     "How well detections were assigned to landmarks: precision, recall and F1 of \"these two detections are the same\n"
     "landmark\" over all pairs, and over pairs within windows of 300 frames (local).\n"
     "\n"
@@ -59,7 +59,7 @@ int evaluateAssociation(const std::vector<std::string>& arguments) {
       "CSV frame,row,landmark; the row counts the detections of a frame from 0; -1 false positive")(
       "json", po::bool_switch(&as_json), "print JSON in place of a table")("output", po::value(&folder),
                                                                            "folder for association.json");
-  if (!parseOrHelp(arguments, kUsage, options)) return 0;
+  if (!parseOrHelp(arguments, kAssociationUsage, options)) return 0;
 
   const std::vector<TrueDetection> truth = readTrueDetections(truth_path);
   const std::vector<AssociatedDetection> associations = readAssociations(associations_path);

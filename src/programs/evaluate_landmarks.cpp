@@ -24,7 +24,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr const char* kUsage =
+constexpr const char* kLandmarksUsage =
     "Mapped landmarks against true ones, matched one to one within a radius in the plane.\n"
     "\n"
     "usage: evaluate landmarks --truth landmarks.csv --landmarks landmarks.csv [--radius R] [--class NAME ...]\n"
@@ -38,7 +38,7 @@ constexpr const char* kUsage =
     "is moved by the alignment of the trajectory that it was made along. With --objects, true landmarks that fewer\n"
     "than N frames show (an object within the radius) count neither as missed nor as ghosts.\n";
 
-struct Options {
+struct LandmarksOptions {
   std::string truth_path;
   std::string map_path;
   std::string poses_path;
@@ -69,11 +69,11 @@ struct TrueDrive {
   std::vector<Pose> T_truth_velodyne;  ///< in the frame of the true landmarks, which is the first of them
 };
 
-bool needsVelodyne(const Options& options) {
+bool needsVelodyne(const LandmarksOptions& options) {
   return !options.objects_path.empty() || (!options.trajectory_path.empty() && options.alignment != "none");
 }
 
-TrueDrive readDrive(const Options& options) {
+TrueDrive readDrive(const LandmarksOptions& options) {
   const std::vector<Pose> T_world_cam0 = readKittiTrajectory(options.poses_path);
   TrueDrive drive;
   drive.length_m = pathLength(poseMatrices(T_world_cam0));
@@ -87,7 +87,7 @@ TrueDrive readDrive(const Options& options) {
 }
 
 /// From the frame of the map to that of the true landmarks, by the trajectories of the Velodyne in both.
-Pose alignment(const Options& options, const TrueDrive& drive) {
+Pose alignment(const LandmarksOptions& options, const TrueDrive& drive) {
   if (options.trajectory_path.empty() || options.alignment == "none") return Pose::identity();
   const std::vector<Pose> estimate_cam0 = readKittiTrajectory(options.trajectory_path);
   const std::vector<Pose>& truth = drive.T_truth_velodyne;
@@ -97,7 +97,7 @@ Pose alignment(const Options& options, const TrueDrive& drive) {
   return options.alignment == "se2" ? planarAlignment(estimated_m, true_m) : rigidAlignment(estimated_m, true_m);
 }
 
-LandmarkComparison comparison(const Options& options, const TrueDrive& drive) {
+LandmarkComparison comparison(const LandmarksOptions& options, const TrueDrive& drive) {
   LandmarkComparison result;
   result.radius_m = options.radius_m;
   result.match_class = !options.ignore_class;
@@ -163,7 +163,7 @@ std::string mapPlot(const NumberedLandmarks& truth, const NumberedLandmarks& map
   return svgPlot(plot);
 }
 
-po::options_description describe(Options& values) {
+po::options_description describe(LandmarksOptions& values) {
   po::options_description options("options");
   options.add_options()("truth", po::value(&values.truth_path)->required(), "true landmarks")(
       "landmarks", po::value(&values.map_path)->required(), "mapped landmarks")(
@@ -182,7 +182,7 @@ po::options_description describe(Options& values) {
   return options;
 }
 
-void check(const Options& options) {
+void check(const LandmarksOptions& options) {
   if (!(options.radius_m > 0.0) || !std::isfinite(options.radius_m)) throw InputError("--radius must be positive");
   if (options.alignment != "se3" && options.alignment != "se2" && options.alignment != "none") {
     throw InputError("--align is '" + options.alignment + "', one of se3, se2 and none was expected");
@@ -193,7 +193,7 @@ void check(const Options& options) {
 }
 
 /// Without those that hardly a frame shows.
-NumberedLandmarks seenOnes(const Options& options, const TrueDrive& drive, const NumberedLandmarks& truth) {
+NumberedLandmarks seenOnes(const LandmarksOptions& options, const TrueDrive& drive, const NumberedLandmarks& truth) {
   const std::vector<int> frames =
       framesThatShow(truth.landmarks, options.objects_path, readClassTable(options.table_path), options.classes,
                      drive.T_truth_velodyne, options.radius_m);
@@ -209,8 +209,8 @@ NumberedLandmarks seenOnes(const Options& options, const TrueDrive& drive, const
 }  // namespace
 
 int evaluateLandmarks(const std::vector<std::string>& arguments) {
-  Options options;
-  if (!parseOrHelp(arguments, kUsage, describe(options))) return 0;
+  LandmarksOptions options;
+  if (!parseOrHelp(arguments, kLandmarksUsage, describe(options))) return 0;
   check(options);
   const NumberedLandmarks all = readLandmarks(options.truth_path, options.classes);
   const TrueDrive drive = options.poses_path.empty() ? TrueDrive{} : readDrive(options);

@@ -18,7 +18,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr const char* kUsage =
+constexpr const char* kLoopsUsage =
     "Loop closures, or scores of pairs of frames, against true poses.\n"
     "\n"
     "usage: evaluate loops --poses poses.txt --closures loop_closures.csv [--calib calib.txt] [--json] [--output DIR]\n"
@@ -29,7 +29,7 @@ constexpr const char* kUsage =
     "            blocks of 10 frames with a right one within 100 frames\n"
     "  pairs     F1max and extended precision of the scores; positive < 3 m, negative > 20 m\n";
 
-struct Options {
+struct LoopsOptions {
   std::string poses_path;
   std::string closures_path;
   std::string pairs_path;
@@ -45,7 +45,7 @@ std::vector<PairEstimate> readPairs(const std::string& path) {
   return pairs;
 }
 
-void scoreClosures(const Options& options) {
+void scoreClosures(const LoopsOptions& options) {
   const std::string calibration_path =
       options.calibration_path.empty() ? calibrationBeside(options.poses_path) : options.calibration_path;
   const std::vector<Pose> poses =
@@ -81,7 +81,7 @@ Plot precisionRecallPlot(const PairScore& score) {
   return plot;
 }
 
-void scorePairs(const Options& options) {
+void scorePairs(const LoopsOptions& options) {
   std::vector<Eigen::Vector2d> positions_m;  // the ground plane of the camera frame: x right, z forward
   for (const Pose& pose : readKittiTrajectory(options.poses_path)) {
     positions_m.emplace_back(pose.translation_m.x(), pose.translation_m.z());
@@ -105,7 +105,7 @@ void scorePairs(const Options& options) {
 }  // namespace
 
 int evaluateLoops(const std::vector<std::string>& arguments) {
-  Options values;
+  LoopsOptions values;
   po::options_description options("options");
   options.add_options()("poses", po::value(&values.poses_path)->required(), "true poses, KITTI format")(
       "closures", po::value(&values.closures_path),
@@ -114,7 +114,7 @@ int evaluateLoops(const std::vector<std::string>& arguments) {
       "calib", po::value(&values.calibration_path), "calibration; default: calib.txt beside the poses")(
       "json", po::bool_switch(&values.as_json), "print JSON in place of a line")(
       "output", po::value(&values.folder), "folder for loops.json, or pairs.json and precision_recall.svg");
-  if (!parseOrHelp(arguments, kUsage, options)) return 0;
+  if (!parseOrHelp(arguments, kLoopsUsage, options)) return 0;
   if (values.closures_path.empty() == values.pairs_path.empty()) {
     throw InputError("loops needs either --closures or --pairs");
   }

@@ -23,7 +23,7 @@ namespace {
 
 namespace po = boost::program_options;
 
-constexpr const char* kUsage =
+constexpr const char* kTrajectoryUsage =
     "Errors of trajectories against the truth, in KITTI format with a row a frame.\n"
     "An estimate FILE.tum is in TUM format, of the base frame; its poses are scored whose stamps are in times.txt "
     "beside\n"
@@ -255,7 +255,7 @@ int evaluateTrajectory(const std::vector<std::string>& arguments) {
       "json", po::bool_switch(&as_json), "print JSON in place of a table")(
       "output", po::value(&folder),
       "folder for trajectory.json, trajectory_errors.csv, trajectory.svg and running_rmse.svg");
-  if (!parseOrHelp(arguments, kUsage, options)) return 0;
+  if (!parseOrHelp(arguments, kTrajectoryUsage, options)) return 0;
 
   const Truth truth = readTruth(truth_path);
   const std::vector<Run> runs = evaluateRuns(truth, paths);

@@ -11,7 +11,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-ClassTable makeTable() {
+ClassTable makeObjectClasses() {
   std::vector<ClassInfo> classes(2);
   classes[0].name = "pole";
   classes[1].name = "trunk";
@@ -32,7 +32,7 @@ class ObjectsFileTest : public ::testing::Test {
     expectInputError([&] { read(content); }, parts);
   }
 
-  const ClassTable classes_ = makeTable();
+  const ClassTable classes_ = makeObjectClasses();
   std::string notice_;
   const TemporaryFolder folder_;
   const std::string path_ = folder_ / "objects.csv";

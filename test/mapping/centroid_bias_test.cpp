@@ -18,7 +18,7 @@ const OdometryNoise kOdometry{0.03, 0.03, 0.03, 0.0007, 0.0, 0.0007};
 enum Class { kBuilding, kPole, kVehicle };  // the first has no bias
 
 /// A class has a bias unless its landmarks move by more than 0.4 m.
-ClassTable makeTable(double building_moves_m = 2.0, double vehicle_moves_m = 0.4) {
+ClassTable makeBiasedTable(double building_moves_m = 2.0, double vehicle_moves_m = 0.4) {
   std::vector<ClassInfo> classes(3);
   classes[kPole].name = "pole";
   classes[kVehicle] = {1, "vehicle", "#000000", false, 1.0, 0.4, 0.4, Transition::kGaussian, vehicle_moves_m};
@@ -74,7 +74,7 @@ BiasStretch drive(Rng& rng, double scale_error, bool is_biased) {
 }
 
 CentroidBias estimate(std::uint64_t seed, double scale_error, bool is_biased, int stretches = 60) {
-  CentroidBias bias({}, makeTable());
+  CentroidBias bias({}, makeBiasedTable());
   Rng rng(seed);
   for (int i = 0; i < stretches; ++i) bias.add(drive(rng, scale_error, is_biased), kOdometry);
   return bias;
@@ -114,7 +114,7 @@ TEST_P(CentroidBiasWithScaleError, IsNotInventedWhereThereIsNone) {
 INSTANTIATE_TEST_SUITE_P(Errors, CentroidBiasWithScaleError, testing::Values(-0.02, 0.0, 0.015));
 
 TEST(CentroidBiasTest, IsZeroBeforeAnythingWasSeenAndNoMoreUncertainThanTheClassTable) {
-  const CentroidBias bias({}, makeTable());
+  const CentroidBias bias({}, makeBiasedTable());
   EXPECT_EQ(bias.at(kPole, 20.0).range_m, 0.0);
   const Eigen::Matrix3d cov = bias.uncertainty(kPole, {20.0, 0.0, 0.0});
   EXPECT_NEAR(cov(0, 0), 0.01, 1e-9);  // range_stddev of the table: 0.1 m
@@ -122,7 +122,7 @@ TEST(CentroidBiasTest, IsZeroBeforeAnythingWasSeenAndNoMoreUncertainThanTheClass
 }
 
 TEST(CentroidBiasTest, StaticObjectsThatAreSeenAlikeFromEverywhereHaveOnePlace) {
-  const CentroidBias bias({}, makeTable());
+  const CentroidBias bias({}, makeBiasedTable());
   EXPECT_TRUE(bias.hasOnePlace(kPole));
   EXPECT_FALSE(bias.hasOnePlace(kBuilding)) << "another part of it is seen from elsewhere";
   EXPECT_FALSE(bias.hasOnePlace(kVehicle)) << "it may drive";
@@ -166,9 +166,9 @@ CentroidBias loaded(CentroidBias& saved, const ClassTable& classes) {
 
 TEST(CentroidBiasTest, ItIsKeptByClassWhicheverOfThemHaveOne) {
   CentroidBias bias = estimate(3, 0.0, true);
-  const CentroidBias same = loaded(bias, makeTable());
-  const CentroidBias all = loaded(bias, makeTable(0.4, 0.4));
-  const CentroidBias swapped = loaded(bias, makeTable(0.4, 2.0));
+  const CentroidBias same = loaded(bias, makeBiasedTable());
+  const CentroidBias all = loaded(bias, makeBiasedTable(0.4, 0.4));
+  const CentroidBias swapped = loaded(bias, makeBiasedTable(0.4, 2.0));
   for (const double range_m : {5.0, 20.0, 35.0}) {
     EXPECT_EQ(same.at(kVehicle, range_m).range_m, bias.at(kVehicle, range_m).range_m);
     EXPECT_EQ(same.at(kPole, range_m).height_variance_m2, bias.at(kPole, range_m).height_variance_m2);
@@ -189,7 +189,7 @@ TEST(CentroidBiasTest, ItIsKeptByClassWhicheverOfThemHaveOne) {
 TEST(CentroidBiasTest, SwitchedOffItDoesNothing) {
   BiasConfig config;
   config.enabled = false;
-  CentroidBias bias(config, makeTable());
+  CentroidBias bias(config, makeBiasedTable());
   Rng rng(7);
   bias.add(drive(rng, 0.0, true), kOdometry);
   EXPECT_EQ(bias.at(kVehicle, 20.0).range_m, 0.0);
@@ -199,10 +199,10 @@ TEST(CentroidBiasTest, SwitchedOffItDoesNothing) {
 TEST(CentroidBiasTest, OrderOfObservationsDoesNotMatter) {
   Rng rng(8);
   BiasStretch stretch = drive(rng, 0.0, true);
-  CentroidBias a({}, makeTable());
+  CentroidBias a({}, makeBiasedTable());
   a.add(stretch, kOdometry);
   std::reverse(stretch.observations.begin(), stretch.observations.end());
-  CentroidBias b({}, makeTable());
+  CentroidBias b({}, makeBiasedTable());
   b.add(stretch, kOdometry);
   EXPECT_NEAR(a.at(kVehicle, 20.0).range_m, b.at(kVehicle, 20.0).range_m, 1e-9);
 }

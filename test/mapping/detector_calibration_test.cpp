@@ -7,7 +7,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-ClassTable makeTable(double stddev_m) {
+ClassTable makeNoisyTable(double stddev_m) {
   std::vector<ClassInfo> classes(1);
   classes[0].name = "pole";
   classes[0].range_stddev_m = stddev_m;
@@ -18,7 +18,7 @@ ClassTable makeTable(double stddev_m) {
 /// Drives 300 m past objects 10 m apart; noise along the line of sight, across it and vertically.
 DetectorCalibration drive(const Eigen::Vector3d& noise_m, double wander_m_per_m, double clutter_per_frame,
                           double table_stddev_m = 0.5) {
-  DetectorCalibration calibration({}, makeTable(table_stddev_m));
+  DetectorCalibration calibration({}, makeNoisyTable(table_stddev_m));
   Rng rng(1);
   for (int f = 0; f < 300; ++f) {
     const Pose T_odom_base{expRotation({0.0, 0.0, 0.01 * f}), {static_cast<double>(f), 0.0, 0.0}};
@@ -77,7 +77,7 @@ TEST(DetectorCalibrationTest, CentroidsThatWanderAreToldFromNoisyOnes) {
 TEST(DetectorCalibrationTest, SwitchedOffItKeepsTheClassTable) {
   CalibrationConfig config;
   config.enabled = false;
-  DetectorCalibration calibration(config, makeTable(0.5));
+  DetectorCalibration calibration(config, makeNoisyTable(0.5));
   Detection detection;
   detection.position_m = {10.0, 0.0, 0.0};
   for (int i = 0; i < 100; ++i) calibration.add(Pose::identity(), {detection});
@@ -92,7 +92,7 @@ TEST(RunningMedianTest, IsTheMedianWithinABin) {
 }
 
 TEST(DetectorCalibrationTest, ObjectsThatAreNeverSeenTwiceInARowTeachNothing) {
-  DetectorCalibration calibration({}, makeTable(0.05));
+  DetectorCalibration calibration({}, makeNoisyTable(0.05));
   for (int f = 0; f < 300; ++f) {
     Detections detections(f % 10 < 2 ? 1 : 0);  // one of two that stand side by side, then the other
     for (Detection& detection : detections) detection.position_m = {5.0, f % 10 == 0 ? 0.1 : -0.1, 0.0};

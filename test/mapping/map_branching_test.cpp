@@ -18,7 +18,7 @@ constexpr double kFar_m =
     1000.0;  // between the first and the second pass in the odometry, so that nothing is carried on
 constexpr double kRange_m = 28.0;
 
-ClassTable makeTable() {
+ClassTable makeMapTable() {
   std::vector<ClassInfo> classes(2);
   classes[0].name = "pole";
   classes[1].name = "trunk";
@@ -126,7 +126,7 @@ void driveThroughNothing(Mapper& mapper, Rng& rng) {
 }
 
 Passes drive(std::uint64_t seed, const Options& options, const MapperConfig& config = {}) {
-  Mapper mapper(config, makeTable());
+  Mapper mapper(config, makeMapTable());
   Passes passes;
   const std::vector<Object> first_street = street(seed);
   const std::vector<Object> second_street = options.is_same_street ? first_street : street(seed + 1000);

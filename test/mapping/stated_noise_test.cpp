@@ -10,7 +10,7 @@ namespace semantic_mht_slam {
 namespace {
 
 /// Poles are known well, trunks badly.
-ClassTable makeTable() {
+ClassTable makeStatedTable() {
   std::vector<ClassInfo> classes(2);
   classes[0].name = "pole";
   classes[0].range_stddev_m = classes[0].lateral_stddev_m = 0.05;
@@ -30,7 +30,7 @@ MapperConfig makeConfig() {
 
 /// Covariance of the only landmark after ten frames of a pole, the last of which says `last_class`.
 Eigen::Matrix3d covAfterTenFrames(const std::optional<Eigen::Matrix3d>& stated, ClassIndex last_class) {
-  Mapper mapper(makeConfig(), makeTable());
+  Mapper mapper(makeConfig(), makeStatedTable());
   Rng rng(1);
   for (std::size_t frame = 0; frame < 10; ++frame) {
     Detection detection;
@@ -63,7 +63,7 @@ TEST(StatedNoiseTest, WithoutOneTheNoiseOfTheObjectsClassIsUsedWhateverTheLabel)
 TEST(StatedNoiseTest, LandmarksTurnIntoTheNextSubmapAndGrowByTheOdometryOfTheOneBefore) {
   MapperConfig config = makeConfig();
   config.submap.correct_pose = false;
-  Mapper mapper(config, makeTable());
+  Mapper mapper(config, makeStatedTable());
   Rng rng(1);
   Detection detection;
   detection.position_m = {25.0, 2.0, 0.0};

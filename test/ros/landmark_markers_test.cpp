@@ -11,7 +11,7 @@ namespace semantic_mht_slam {
 namespace {
 
 /// Two poles that are well known, one of them undecided, and a third that hardly exists.
-SemanticMap makeMap() {
+SemanticMap makeDrawnMap() {
   SemanticMap map;
   map.header.frame_id = "map";
   map.landmarks.resize(3);
@@ -37,7 +37,7 @@ std::multiset<std::string> namespaces(const visualization_msgs::MarkerArray& arr
 }
 
 TEST(LandmarkMarkersTest, SmallOnesShareAMarkerAndDoubtfulOnesAreNotShown) {
-  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), 1.0, {});
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeDrawnMap(), makeTwoClasses(), 1.0, {});
   EXPECT_EQ(array.markers.front().action, visualization_msgs::Marker::DELETEALL);
   EXPECT_EQ(namespaces(array), (std::multiset<std::string>{"pole", "undecided"}));
   EXPECT_EQ(array.markers.back().type, visualization_msgs::Marker::SPHERE_LIST);
@@ -46,7 +46,7 @@ TEST(LandmarkMarkersTest, SmallOnesShareAMarkerAndDoubtfulOnesAreNotShown) {
 }
 
 TEST(LandmarkMarkersTest, LargeOnesAreEllipsoidsOfTheChosenSize) {
-  SemanticMap map = makeMap();
+  SemanticMap map = makeDrawnMap();
   map.landmarks.resize(1);
   map.landmarks[0].components[0].covariance = {4.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0};
   LiveConfig live;
@@ -60,7 +60,7 @@ TEST(LandmarkMarkersTest, LargeOnesAreEllipsoidsOfTheChosenSize) {
 }
 
 TEST(LandmarkMarkersTest, ObjectsOfAKnownSizeHaveABodyUnlessTheSymbolHidesIt) {
-  SemanticMap map = makeMap();
+  SemanticMap map = makeDrawnMap();
   map.landmarks.resize(1);
   map.landmarks[0].size.x = 1.0;
   map.landmarks[0].size.y = 3.0;
@@ -79,12 +79,12 @@ TEST(LandmarkMarkersTest, LabelsAndTheLimitOfExistenceFollowTheLiveParameters) {
   LiveConfig live;
   live.landmark_labels = true;
   live.landmark_min_existence_prob = 0.0;
-  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeMap(), makeTwoClasses(), 1.0, live);
+  const visualization_msgs::MarkerArray array = toLandmarkMarkers(makeDrawnMap(), makeTwoClasses(), 1.0, live);
   EXPECT_EQ(namespaces(array).count("labels"), 3U);
 }
 
 TEST(LandmarkMarkersTest, SymbolsAreAsSmallAsAskedForAndProvisionalOnesFainter) {
-  SemanticMap map = makeMap();
+  SemanticMap map = makeDrawnMap();
   map.landmarks.resize(1);
   map.landmarks.push_back(map.landmarks[0]);
   map.landmarks[1].provisional = true;

@@ -10,7 +10,7 @@ namespace {
 constexpr double kNear_m = 0.5;
 enum Class { kPole, kVehicle };
 
-ClassTable makeClasses() {
+ClassTable makeDenseClasses() {
   std::vector<ClassInfo> classes(2);
   classes[kPole].name = "pole";
   classes[kVehicle].id = 2;
@@ -53,7 +53,7 @@ ClosureId tie(Map& map, bool holds = true) {
 }
 
 std::vector<SameLandmark> seenAgain(const Map& map) {
-  const ClassTable classes = makeClasses();
+  const ClassTable classes = makeDenseClasses();
   const MapGraph graph({}, classes);
   return landmarksSeenAgain(map, graph, classes, map.closures()[ClosureId(0)], 1, kNear_m);
 }
