@@ -5,10 +5,7 @@
 #include <Eigen/Cholesky>
 
 namespace semantic_mht_slam {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 bool isCovariance(const Eigen::Matrix3d& matrix) {
   if (!matrix.allFinite()) return false;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kQuietGapPerHub = 0.24;
 constexpr double kBendRadius_m = 10.0;  // a bend by 1 rad counts like 10 m
 constexpr double kWorthRepairing_m = 2e-3;
-constexpr int kRepairMargin = 2;          // nodes on either side of a bent piece that are optimised with it
+constexpr int kRepairMargin = 2;  // nodes on either side of a bent piece that are optimised with it
 
 /// Relative pose between the frames of two hubs from one between nodes that hang on them; with the covariance of its
 /// error and of the odometry between node and hub.

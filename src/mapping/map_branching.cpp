@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kGateMahalanobisSq = 11.3;
 constexpr double kMaxGate = 1.0 / 15.0;  // of the radius
-constexpr double kMaxWithheld = 3.0;    // nats of the evidence that the first look held back, at the end
-constexpr double kFinal = 1.0 / 120.0;  // of the radius: prior of the last refinement, around the hypothesis's offset
+constexpr double kMaxWithheld = 3.0;     // nats of the evidence that the first look held back, at the end
+constexpr double kFinal = 1.0 / 120.0;   // of the radius: prior of the last refinement, around the hypothesis's offset
 constexpr double kFinal_rad = 0.02;
 
 PoseOffset offsetOf(const RegistrationMode& mode) {

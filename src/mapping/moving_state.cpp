@@ -19,8 +19,8 @@ void MovingObjects::Track::transfer(StateArchive& archive) {
   archive(place_m, place_cov_m2, motion, motion_cov, log_odds);
   archive.requireClass(class_index);
   archive.requireStamp(stamp);
-  archive.require(missed >= 0 && sightings > 0 && wander_variance_per_m >= 0.0 && std::abs(log_odds) <= kMostKeptLogOdds &&
-                      isPositive(place_cov_m2) && isPositive(motion_cov),
+  archive.require(missed >= 0 && sightings > 0 && wander_variance_per_m >= 0.0 &&
+                      std::abs(log_odds) <= kMostKeptLogOdds && isPositive(place_cov_m2) && isPositive(motion_cov),
                   "a track of nothing");
 }
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kStretchIterations = 4;
 constexpr double kLeastErrorVariance = 1e-12;
-constexpr double kNoiseFreedom = 10.0;   // residuals that the detector's noise as it is known counts for
+constexpr double kNoiseFreedom = 10.0;       // residuals that the detector's noise as it is known counts for
 constexpr double kMostMeanDeviations = 4.0;  // of the odometry on average; more is a wrong association
-constexpr double kMostExcess = 9.0;      // beyond three deviations associations are wrong
+constexpr double kMostExcess = 9.0;          // beyond three deviations associations are wrong
 
 /// Variances of the step errors under a model.
 Eigen::VectorXd priorVariance(const std::vector<MotionVariance>& steps, bool is_planar) {

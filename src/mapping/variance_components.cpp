@@ -42,7 +42,8 @@ void VarianceComponents::add(ErrorInformation stretch) {
 
 bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) const {
   const Eigen::MatrixXd& H = stretch.matrix;
-  const Eigen::VectorXd variance = (stretch.design * log_variance_.array().exp().matrix()).cwiseMax(kLeastComponentVariance);
+  const Eigen::VectorXd variance =
+      (stretch.design * log_variance_.array().exp().matrix()).cwiseMax(kLeastComponentVariance);
   Eigen::MatrixXd posterior = H;
   posterior.diagonal() += variance.cwiseInverse();
   const Eigen::LLT<Eigen::MatrixXd> factor(posterior);

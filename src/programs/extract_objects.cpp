@@ -8,13 +8,13 @@
 #include "semantic_mht_slam/app/labelled_scans.h"
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/images/label_image_file.h"
 #include "semantic_mht_slam/io/calibration_file.h"
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/scan_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/perception/cloud_extractor.h"
 #include "semantic_mht_slam/perception/image_extractor.h"
-#include "semantic_mht_slam/perception/label_image_file.h"
 
 #include "program.h"
 

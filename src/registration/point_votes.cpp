@@ -9,7 +9,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-
 /// The part of a candidate that counts on the grid.
 struct PointVote {
   int detection = 0;

@@ -72,7 +72,8 @@ void SlamNode::publishOverduePose() {
 void SlamNode::receive(const SemanticObjectArrayConstPtr& message, const std::string& publisher) {
   {
     const std::lock_guard<std::mutex> lock(status_mutex_);
-    objects_monitor_.arrived(toStamp(message->header.stamp), odometry_monitor_.status(0.0).stamp, ros::WallTime::now().toSec());
+    objects_monitor_.arrived(toStamp(message->header.stamp), odometry_monitor_.status(0.0).stamp,
+                             ros::WallTime::now().toSec());
     objects_gaps_.arrived(publisher, message->header.seq);
   }
   queue_.push(message);

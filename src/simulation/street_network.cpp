@@ -7,7 +7,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-
 /// A street of the full grid. `line` is the number of its row or column, `place` its number on that line.
 struct GridStreet {
   bool horizontal = true;

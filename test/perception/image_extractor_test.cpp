@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/images/label_image_file.h"
 #include "semantic_mht_slam/perception/image_blobs.h"
-#include "semantic_mht_slam/perception/label_image_file.h"
 
 #include "support/expect_input_error.h"
 #include "support/extraction_classes.h"

@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/perception/label_image_file.h"
+#include "semantic_mht_slam/images/label_image_file.h"
 
 #include <algorithm>
 #include <filesystem>
