@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 
 #include <filesystem>
+#include <utility>
 
 #include "semantic_mht_slam/app/object_extractor_config.h"
 #include "semantic_mht_slam/common/error.h"
@@ -83,7 +84,11 @@ SystemConfig makeSystemConfig(const std::vector<Setting>& settings) {
 
 SystemConfig loadSystemConfig(const std::string& yaml_path, const std::vector<Setting>& overrides) {
   std::vector<Setting> settings = readSettings(yaml_path);
-  settings.insert(settings.end(), overrides.begin(), overrides.end());
+  for (Setting setting : overrides) {
+    const bool names_file = setting.key == "class_table" || setting.key == "evaluator.tree";
+    if (names_file && fs::is_regular_file(setting.value)) setting.value = fs::absolute(setting.value).string();
+    settings.push_back(std::move(setting));
+  }
   return makeSystemConfig(settings);
 }
 

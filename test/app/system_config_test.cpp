@@ -50,6 +50,17 @@ TEST(SystemConfigTest, ClassTableBesideTheConfigurationComesFirst) {
   expectInputError([&] { loadClassTable(config, folder.path()); }, {"none.yaml"});
 }
 
+TEST(SystemConfigTest, CommandLineMeansTheFileOfTheFolderThatOneStandsIn) {
+  const TemporaryFolder folder;
+  writeFileAtomically(folder / "mine.yaml", "classes:\n  - {id: 1, name: lamp}\n");
+  const std::string shipped = packageConfigFile("kitti.yaml");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const SystemConfig config = loadSystemConfig(shipped, {parseOverride("class_table=mine.yaml")});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(loadClassTable(config, std::filesystem::path(shipped).parent_path().string()).names(), "lamp");
+}
+
 TEST(SystemConfigTest, TheSubmapEvaluatorsTreeIsFoundAndAMissingOrForeignOneIsRefused) {
   SystemConfig config;
   config.slam.back_end.evaluator.check_all = false;

@@ -45,7 +45,8 @@ struct SystemConfig {
 
 void describe(SystemConfig& config, Fields& fields);
 
-/// Defaults, changed by a YAML file and then by further settings. Throws InputError or ConfigError.
+/// Defaults, changed by a YAML file and then by further settings, whose relative paths are those of the folder that one
+/// stands in if there is such a file. Throws InputError or ConfigError.
 SystemConfig loadSystemConfig(const std::string& yaml_path, const std::vector<Setting>& overrides);
 
 /// Defaults changed by settings alone. Throws ConfigError.
