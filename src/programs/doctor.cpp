@@ -14,7 +14,7 @@ namespace {
 constexpr char kUsage[] =
     "Looks at a running system and names the first thing that is wrong, and the fix.\n"
     "  rosrun semantic_mht_slam doctor [options]\n"
-    "Exit code 0: all well, the rates are printed; 1: something is wrong.\n";
+    "Exit code 0: no fault; the rates are printed, and what may not be meant; 1: something is wrong.\n";
 
 int run(int argc, char** argv) {
   using namespace semantic_mht_slam;
@@ -38,7 +38,10 @@ int run(int argc, char** argv) {
     std::cout << "problem: " << problem->problem << "\nfix:     " << problem->fix << "\n";
     return 1;
   }
-  std::cout << "all well\n" << summaryOf(system);
+  const std::vector<std::string> notes = notesOf(system);
+  std::cout << (notes.empty() ? "all well\n" : "no fault, but see whether this is meant\n");
+  for (const std::string& note : notes) std::cout << "note: " << note << "\n";
+  std::cout << summaryOf(system);
   return 0;
 }
 

@@ -199,6 +199,12 @@ void diagnoseObjects(const NodeStatus& now, const NodeStatus& before, Diagnostic
   findObjectsFault(now, before, finding);
   finding.otherwise(now.objects.received == 0 ? "waiting for objects"
                                               : formatFixed(now.objects.rate_hz, 1) + " Hz on " + now.objects.topic);
+  if (const std::string& frame = now.estimator.objects_fixed_frame; !frame.empty()) {
+    status.add(kNoteKey, now.objects.topic + " is given in '" + frame +
+                             "', which does not move with the robot: the odometry brings it to '" + now.base_frame +
+                             "' at its stamp. Give what the sensor sees in the frame of the sensor: objects that a "
+                             "tracker remembers count as seen anew in every message");
+  }
   addTopic(now.objects, status);
   status.add("frames used", counters.frames);
   status.add("objects used", counters.detections);

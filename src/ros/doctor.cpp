@@ -139,6 +139,14 @@ std::optional<Prescription> firstProblem(const SystemObservation& system) {
   return std::nullopt;
 }
 
+std::vector<std::string> notesOf(const SystemObservation& system) {
+  std::vector<std::string> notes;
+  for (const DiagnosticStatus& status : system.diagnostics) {
+    if (std::string note = valueOf(status, kNoteKey); !note.empty()) notes.push_back(std::move(note));
+  }
+  return notes;
+}
+
 std::string summaryOf(const SystemObservation& system) {
   std::string summary;
   for (const DiagnosticStatus& status : system.diagnostics) {

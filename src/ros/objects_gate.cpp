@@ -28,11 +28,12 @@ std::optional<DetectorFrame> ObjectsGate::next(const OdometryGate& odometry, con
     if (has_to_wait && now_s < first.deadline_s) return std::nullopt;
     if (place.answer == SensorPlace::Answer::kMayCome) {
       const std::optional<Pose> newest = sensors_.findNewest(first.message.header.frame_id);
-      if (newest) place = {SensorPlace::Answer::kKnown, *newest};
+      if (newest) place = {SensorPlace::Answer::kKnown, *newest, false};
     }
     const SemanticObjectArray message = std::move(waiting_.front().message);
     waiting_.pop_front();  // before anything can fail: a message is tried once
     if (isRefused(message, place.answer, refused)) continue;
+    fixed_frame_ = place.is_by_odometry ? message.header.frame_id : std::string();
     for (const SemanticObject& object : message.objects) {
       if (!classes_.findId(object.class_id)) ++refused.unknown_classes[object.class_id];
     }

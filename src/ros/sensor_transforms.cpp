@@ -27,7 +27,7 @@ std::optional<Pose> lookUp(const tf2::BufferCore& transforms, const std::string&
 }
 
 SensorPlace known(const Pose& T_base_sensor) {
-  return {SensorPlace::Answer::kKnown, T_base_sensor};
+  return {SensorPlace::Answer::kKnown, T_base_sensor, false};
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ SensorPlace SensorTransforms::find(const std::string& name, Stamp stamp) {
   if (frame == base_frame_) return known(Pose::identity());
   switch (sideOf(frame)) {
     case Side::kMap:
-      return {SensorPlace::Answer::kInMap, Pose::identity()};
+      return {SensorPlace::Answer::kInMap};
     case Side::kOdometry:
       return inOdometry(frame, toRosTime(stamp));
     case Side::kRobot:
@@ -88,7 +88,7 @@ SensorPlace SensorTransforms::inOdometry(const std::string& frame, const ros::Ti
   const std::optional<Pose> T_odom_frame = lookUp(transforms_, odom_frame_, frame, time);
   const std::optional<Pose> T_odom_base = lookUp(odometry_, odom_frame_, base_frame_, time);
   if (!T_odom_frame || !T_odom_base) return {};
-  return known(T_odom_base->inverse() * *T_odom_frame);
+  return {SensorPlace::Answer::kKnown, T_odom_base->inverse() * *T_odom_frame, true};
 }
 
 SensorPlace SensorTransforms::onRobot(const std::string& frame, const ros::Time& time) {

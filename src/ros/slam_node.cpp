@@ -221,6 +221,7 @@ void SlamNode::noteStatus() {
   estimator_.loops = publisher_.loops();
   estimator_.graph = slam_->parts().graph.status();
   estimator_.oddities = plausibility_.look();
+  estimator_.objects_fixed_frame = objects_gate_.fixedFrame();
   estimator_.driven_m = slam_->parts().driven.way_m;
   estimator_.far_m = slam_->parts().range_factor * Length::kReferenceRange_m;
   const std::lock_guard<std::mutex> lock(status_mutex_);

@@ -41,7 +41,8 @@ class Feeder {
       node.sendOdometry(time_s);
       if (habits.sends_objects) {
         const double stamp_s = time_s + habits.objects_offset_s;
-        const double back_m = std::fmod(std::abs(10.0 * stamp_s), kApart_m);  // a row of objects that stands
+        double back_m = std::fmod(std::abs(10.0 * stamp_s), kApart_m);  // a row of objects that stands
+        if (habits.objects_frame == "odom") back_m -= RunningNode::wayAt_m(stamp_s);
         node.sendObjects(stamp_s, habits.class_id, 3, habits.objects_frame, back_m);
       }
       ros::WallDuration(0.05).sleep();
@@ -108,6 +109,19 @@ TEST(DoctorRosTest, UnconnectedFrameIsNamed) {
   const Feeder feeder(node, habits);
   expectProblem(askDoctor(node, "--seconds 4"), "no transform from 'nowhere' to 'base_link'",
                 "static_transform_publisher X Y Z YAW PITCH ROLL base_link nowhere");
+}
+
+TEST(DoctorRosTest, ObjectsInTheOdometrysFrameAreNoted) {
+  RunningNode node("fixed");
+  ASSERT_TRUE(node.isReady());
+  Feeder::Habits habits;
+  habits.objects_frame = "odom";
+  const Feeder feeder(node, habits);
+  ros::WallDuration(1.0).sleep();
+  const ProgramResult result = askDoctor(node);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(result.output.find("all well"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("note: /fixed/objects is given in 'odom'"), std::string::npos) << result.output;
 }
 
 TEST(DoctorRosTest, UnmappedClassIsNamed) {

@@ -45,6 +45,15 @@ TEST(DoctorTest, WellSystemHasNoProblemAndItsRatesAreShown) {
   EXPECT_NE(summaryOf(wellSystem()).find("odometry: 10.0 Hz"), std::string::npos);
 }
 
+TEST(DoctorTest, NotesAreShownThoughTheyAreNoFault) {
+  EXPECT_TRUE(notesOf(wellSystem()).empty());
+  SystemObservation system = wellSystem();
+  system.diagnostics[2] =
+      makeStatus("objects", DiagnosticStatus::OK, "9.0 Hz", {{"topic", "/objects"}, {kNoteKey, "given in 'odom'"}});
+  EXPECT_EQ(problemOf(system), "");
+  EXPECT_EQ(notesOf(system), std::vector<std::string>{"given in 'odom'"});
+}
+
 TEST(DoctorTest, CausesAreNamedBeforeTheirEffects) {
   SystemObservation system = wellSystem();
   system.diagnostics[2] = makeStatus("objects", DiagnosticStatus::WARN, "objects fault", {{"topic", "/objects"}});

@@ -1,5 +1,6 @@
 // All services at once while a drive comes in at ten times its speed: each call is answered, and no message is lost.
 #include <atomic>
+#include <cstdlib>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -20,6 +21,7 @@ const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(n
 constexpr int kCalls = 200;
 constexpr int kCallers = 2;
 constexpr double kFramePause_s = 0.01;  // frames are 0.1 s apart
+constexpr int kMostWaiting = 400;       // messages; a node that is slower, by a sanitizer, gets them as it takes them
 
 /// Calls services in random order.
 class Caller {
@@ -82,6 +84,7 @@ TEST(ServiceCallsTest, EachOfTwoHundredIsAnsweredDuringADriveAtTenTimesItsSpeedA
   }
   int frame = 0;
   for (; frame < 600 || calling > 0; ++frame) {
+    waitFor([&] { return std::atoi(driving.node.value("queue", "waiting").c_str()) < kMostWaiting; });
     driving.send(frame);
     ros::WallDuration(kFramePause_s).sleep();
   }

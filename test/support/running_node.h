@@ -57,10 +57,12 @@ class RunningNode {
     });
   }
 
-  /// One odometry sample on a straight line, 10 m/s.
+  /// Driven at 10 m/s; stays on Earth, whatever the clock.
+  static double wayAt_m(double time_s) { return 10.0 * std::fmod(time_s, 1e6); }
+
+  /// One odometry sample on a straight line.
   void sendOdometry(double time_s, const std::string& odom_frame = "odom") {
-    const double x_m = 10.0 * std::fmod(time_s, 1e6);  // stays on Earth, whatever the clock
-    const Pose pose{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
+    const Pose pose{Eigen::Quaterniond::Identity(), {wayAt_m(time_s), 0.0, 0.0}};
     odometry_.publish(toOdometry({stampFromSeconds(kBegin_s + time_s), pose}, odom_frame, "base_link"));
   }
 

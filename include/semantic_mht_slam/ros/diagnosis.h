@@ -9,6 +9,9 @@ namespace semantic_mht_slam {
 /// Key under which a diagnosis that is not OK says what to do.
 constexpr char kFixKey[] = "fix";
 
+/// Key under which a diagnosis says what is no fault, but may not be what was meant.
+constexpr char kNoteKey[] = "note";
+
 /// Hardware id of the node's diagnostics, by which other programs know them.
 constexpr char kDiagnosticsHardwareId[] = "semantic_mht_slam";
 

@@ -33,6 +33,9 @@ struct Prescription {
 /// The first thing that is wrong, in the order in which one would mend things: master, node, time, odometry, objects.
 std::optional<Prescription> firstProblem(const SystemObservation& system);
 
+/// What is no fault, but may not be what was meant.
+std::vector<std::string> notesOf(const SystemObservation& system);
+
 /// The messages of the node's diagnostics, a line each.
 std::string summaryOf(const SystemObservation& system);
 

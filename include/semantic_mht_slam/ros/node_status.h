@@ -31,6 +31,7 @@ struct EstimatorStatus {
   std::size_t loops = 0;      ///< accepted
   GraphStatus graph;
   InputOddities oddities;
+  std::string objects_fixed_frame;  ///< in which the newest objects are given, if it does not move with the robot
   std::size_t odometry_jumps = 0;  ///< each begins a session
   double driven_m = 0.0;           ///< by the frames of the map
   double lost_m = 0.0;             ///< driven since the vehicle last knew where it is

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
@@ -31,6 +32,9 @@ class ObjectsGate {
   std::optional<DetectorFrame> next(const OdometryGate& odometry, const std::optional<Stamp>& latest, double now_s,
                                     RefusedInput& refused);
 
+  /// Frame of the newest objects that were used, if it does not move with the robot; empty otherwise.
+  const std::string& fixedFrame() const { return fixed_frame_; }
+
   /// Gives up what waits.
   void clear() { waiting_.clear(); }
 
@@ -48,6 +52,7 @@ class ObjectsGate {
   const double timeout_s_;
   std::deque<Waiting> waiting_;
   std::optional<Stamp> newest_;  ///< of those that came
+  std::string fixed_frame_;
 };
 
 }  // namespace semantic_mht_slam

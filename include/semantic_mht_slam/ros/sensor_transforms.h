@@ -25,6 +25,7 @@ struct SensorPlace {
   };
   Answer answer = Answer::kMayCome;
   Pose T_base_sensor = Pose::identity();
+  bool is_by_odometry = false;  ///< the frame does not move with the robot
 };
 
 /// Where objects were seen from. A sensor may be on /tf_static or on /tf, and may move on the robot; a frame that hangs
