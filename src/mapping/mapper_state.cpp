@@ -14,10 +14,7 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr int kMostCounted = 1 << 29;       // that can be doubled
-constexpr Eigen::Index kMostErrors = 256;   // of a stretch; some dozens come
-constexpr std::size_t kMostStretches = 64;  // ten are kept
-constexpr double kLargestLog = 100.0;       // whose exponential is a number
+constexpr int kMostCounted = 1 << 29;  // that can be doubled
 
 /// A list that has one entry a class, or one a cell, of the present configuration.
 template <class List>
@@ -164,48 +161,11 @@ void LandmarkPropagation::transfer(StateArchive& archive) {
   archive(T_odom_last_, last_offset_);
   transferLandmarks(archive, landmarks_);
   transferLandmarks(archive, resting_);
-}
-
-void ErrorInformation::transfer(StateArchive& archive) {
-  archive(matrix, vector, design, effect, coupling, nuisance_matrix, nuisance_vector);
-  const Eigen::Index size = vector.size();
-  const Eigen::Index nuisances = nuisance_vector.size();
-  if (matrix.rows() != size || matrix.cols() != size || design.rows() != size || effect.rows() != size ||
-      coupling.rows() != size || coupling.cols() != nuisances || nuisance_matrix.rows() != nuisances ||
-      nuisance_matrix.cols() != nuisances) {
-    StateArchive::fail("errors of the odometry whose sizes do not fit");
+  for (const auto* landmarks : {&landmarks_, &resting_}) {
+    for (const HypothesisLandmark& landmark : *landmarks) {
+      archive.require(landmark->updated_at_m == 0.0, "a landmark that was seen in a submap that has not begun");
+    }
   }
-  archive.require(size <= kMostErrors && nuisances <= kMostErrors && (design.array() >= 0.0).all(),
-                  "errors of the odometry that are none");
-  if (!archive.isReading()) return;
-  Eigen::MatrixXd all(size + nuisances, size + nuisances);
-  all << matrix, coupling, coupling.transpose(), nuisance_matrix;
-  archive.require(isNotNegative(all), "errors of the odometry whose information is negative");
-}
-
-void VarianceComponents::transfer(StateArchive& archive) {
-  const Eigen::Index parts = prior_mean_.size();
-  const Eigen::Index effects = effect_.size();
-  archive(prior_mean_, prior_precision_, effect_information_, effect_vector_, stretches_);
-  archive(log_variance_, log_uncertainty_, effect_, effect_cov_);
-  bool fits = prior_mean_.size() == parts && prior_precision_.rows() == parts && prior_precision_.cols() == parts &&
-              log_variance_.size() == parts && log_uncertainty_.size() == parts && log_variance_.allFinite() &&
-              effect_.size() == effects && effect_vector_.size() == effects && effect_information_.rows() == effects &&
-              effect_information_.cols() == effects && effect_cov_.rows() == effects && effect_cov_.cols() == effects;
-  for (const ErrorInformation& stretch : stretches_) {
-    fits = fits && stretch.design.cols() == parts && stretch.effect.cols() + stretch.coupling.cols() == effects;
-  }
-  if (!fits) StateArchive::fail("errors of the odometry in other parts");
-  archive.require(isPositive(prior_precision_) && isNotNegative(effect_information_) && isNotNegative(effect_cov_),
-                  "errors of the odometry whose precision is not positive");
-  archive.require(log_variance_.cwiseAbs().maxCoeff() <= kLargestLog && log_uncertainty_.minCoeff() >= 0.0,
-                  "errors of the odometry beyond any");
-  archive.require(stretches_.size() <= kMostStretches, "more errors of the odometry than are kept");
-}
-
-void OdometryLearning::transfer(StateArchive& archive) {
-  archive(planar_, vertical_);
-  if (archive.isReading() && config_.learn) readOff();
 }
 
 void StationKeeping::Seen::transfer(StateArchive& archive) {
@@ -262,6 +222,12 @@ void Mapper::requireOpenSubmap(const StateArchive& archive) const {
   archive.require(stations_.fits(frames_), "a number names no detection of the open submap");
   archive.require(areTracked(frames_), "tracks of other detections than the submap has");
   if (!is_open_) return;
+  for (const MapHypothesis& leaf : tree_.leaves()) {
+    for (const HypothesisLandmark& landmark : leaf.landmarks) {
+      const bool is_past = landmark->updated_at_m >= 0.0 && landmark->updated_at_m <= motion_.way_m;
+      archive.require(is_past, "a landmark that was seen before the submap began, or is still to be seen");
+    }
+  }
   std::set<const AssociationRecord*> known;  // branches share their beginnings
   for (const MapHypothesis& leaf : tree_.leaves()) {
     const AssociationRecord* record = leaf.history.get();

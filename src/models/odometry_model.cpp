@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kAlike_m = 3.0;  // over which systematic errors that are not known act as one
 constexpr double kAlike_rad = 1.0;
+constexpr double kLongest = 1e11;  // way and turn, as far as poses may lie
 constexpr double kLargest = 1e30;  // whose products with a way and with themselves are numbers
 
 double squared(double value) {
@@ -62,7 +63,9 @@ Motion operator-(const Motion& a, const Motion& b) {
 
 void transfer(StateArchive& archive, Motion& motion) {
   archive(motion.way_m, motion.turn_rad);
-  archive.require(motion.way_m >= 0.0 && motion.turn_rad >= 0.0, "a negative way");
+  const bool is_way =
+      motion.way_m >= 0.0 && motion.way_m <= kLongest && motion.turn_rad >= 0.0 && motion.turn_rad <= kLongest;
+  archive.require(is_way, "a way that is negative, or longer than any");
 }
 
 double headingOf(const Eigen::Quaterniond& rotation) {

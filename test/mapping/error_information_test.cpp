@@ -24,7 +24,8 @@ ErrorInformation goodInformation() {
 void read(ErrorInformation information) {
   StateArchive writing;
   writing(information);
-  StateArchive reading(writing.written());
+  const std::string bytes = writing.written();
+  StateArchive reading(bytes);
   ErrorInformation again;
   reading(again);
   reading.requireEnd();
@@ -45,6 +46,19 @@ TEST(ErrorInformationTest, NegativeInformationOfErrorsAndNuisancesTogetherIsRefu
   information = goodInformation();
   information.matrix(0, 0) = -1.0;
   expectInputError([&] { read(information); }, {"information is negative"});
+}
+
+/// From a map file: it made the systematic errors of the odometry 1e34, and landmarks infinite with the next submap.
+TEST(ErrorInformationTest, WhatNoResidualsGiveIsRefused) {
+  ErrorInformation information = goodInformation();
+  information.vector(0) = 1e30;
+  expectInputError([&] { read(information); }, {"no residuals give"});
+  information = goodInformation();
+  information.nuisance_vector(0) = -1e30;
+  expectInputError([&] { read(information); }, {"no residuals give"});
+  information = goodInformation();
+  information.vector(1) = 1e4;  // ten thousand deviations
+  EXPECT_NO_THROW(read(information));
 }
 
 }  // namespace
