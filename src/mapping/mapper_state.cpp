@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "semantic_mht_slam/common/state_archive.h"
@@ -222,6 +223,13 @@ void Mapper::requireOpenSubmap(const StateArchive& archive) const {
   archive.require(stations_.fits(frames_), "a number names no detection of the open submap");
   archive.require(areTracked(frames_), "tracks of other detections than the submap has");
   if (!is_open_) return;
+  Motion driven;
+  for (std::size_t k = 1; k < frames_.size(); ++k) {
+    driven = driven + motionOf(frames_[k - 1].T_odom_base.inverse() * frames_[k].T_odom_base);
+  }
+  archive.require(std::abs(driven.way_m - motion_.way_m) <= kRounding * (1.0 + motion_.way_m) &&
+                      std::abs(driven.turn_rad - motion_.turn_rad) <= kRounding * (1.0 + motion_.turn_rad),
+                  "a submap whose frames lead another way than it was driven");
   for (const MapHypothesis& leaf : tree_.leaves()) {
     for (const HypothesisLandmark& landmark : leaf.landmarks) {
       const bool is_past = landmark->updated_at_m >= 0.0 && landmark->updated_at_m <= motion_.way_m;

@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/slam/slam.h"
 
+#include "support/expect_input_error.h"
 #include "support/peak_memory.h"
 #include "support/square_drive.h"
 #include "support/state_mutation.h"
@@ -83,6 +84,24 @@ TEST_P(HostileStateTest, WhatIsChangedIsRefusedByNameOrLivedWith) {
   for (const StateSection& good : state_.sections) state_mb += 1e-6 * static_cast<double>(good.bytes.size());
   EXPECT_LE(most_mb, 3.0 * state_mb + 50.0) << "of a state of " << state_mb << " MB";
   RecordProperty("loaded", loaded);
+}
+
+/// They made a negative way between two keyframes, whose covariance the pose graph refuses.
+TEST(HostileNumberTest, FramesThatLeadAnotherWayAreRefused) {
+  const SlamConfig config = defaultsOf(Method::kDpmhm);
+  const ClassTable classes = makeStreetClasses();
+  Slam slam(config, classes);
+  SquareDrive(7).feed(slam, 0, 130);
+  const SlamState good = slam.snapshot();
+  const auto expectRefused = [&](double from, double to, const std::string& reason) {
+    SlamState state = good;
+    for (StateSection& section : state.sections) {
+      if (section.name == "hypotheses") section.bytes = withNumber(std::move(section.bytes), from, to);
+    }
+    expectInputError([&] { Slam(config, classes, state); }, {"section 'hypotheses'", reason});
+  };
+  const double north_m = slam.parts().latest_frame->T_odom_base.translation_m.y();
+  expectRefused(north_m, north_m - 4.0, "lead another way");
 }
 
 INSTANTIATE_TEST_SUITE_P(Sections, HostileStateTest, testing::Range(0, 6));

@@ -10,6 +10,25 @@
 
 namespace semantic_mht_slam {
 
+/// Bytes of a `StateArchive` in which another double stands wherever `from` stood; as they are if it is not there.
+inline std::string withNumber(std::string bytes, double from, double to) {
+  std::size_t count = 0;
+  std::size_t place = 0;
+  for (unsigned shift = 0; place < bytes.size(); shift += 7) {
+    const auto part = static_cast<unsigned char>(bytes[place++]);
+    count |= static_cast<std::size_t>(part & 127U) << shift;
+    if ((part & 128U) == 0) break;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<char, sizeof(double)> number{};
+    for (std::size_t k = 0; k < number.size(); ++k) number[k] = bytes.at(place + k * count + i);
+    if (std::memcmp(number.data(), &from, sizeof from) != 0) continue;
+    std::memcpy(number.data(), &to, sizeof to);
+    for (std::size_t k = 0; k < number.size(); ++k) bytes[place + k * count + i] = number[k];
+  }
+  return bytes;
+}
+
 /// Bytes of a `StateArchive` with one thing changed: a bit, a number by one that nobody expects, a count, or a piece
 /// that is missing or stands twice.
 inline std::string mutated(std::string bytes, Rng& rng) {
