@@ -55,6 +55,10 @@ void describe(NodeConfig& config, Fields& fields) {
   fields.add(
       "trajectory_poses", config.trajectory_poses, "poses", {2, 10000000},
       "Most poses in the topics trajectory and markers/odometry; of longer drives every 2nd, 4th, ... is shown.");
+  fields.add("ambiguous_below", config.ambiguous_below_prob, "", {0.0, 1.0},
+             "The topic ambiguous_detections explains detections whose probability is below this,");
+  fields.add("ambiguous_most", config.ambiguous_most, "detections", {0, 1000000},
+             "but no more of a submap than these, the least sure ones.");
   fields.add("reset_after_jump_back", config.reset_after_jump_back_s, "s", {0.0, 3600.0},
              "Odometry whose stamp falls back by more than this starts a new map.");
   fields.add("publish_tf", config.publishes_tf, "Whether tf map -> odom is published; the topic pose says the same.");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "semantic_mht_slam/common/log_math.h"
@@ -129,6 +130,24 @@ bool AssociationModel::isSurelyOutsideGate(const Eigen::Matrix3d& cov, const Eig
   return (d.array().square() > gate_mahalanobis_sq_ * variance_m2).any();
 }
 
+/// Of the difference between a detection with that noise and a landmark.
+Eigen::Matrix3d AssociationModel::innovationCov(const TrackedLandmark& landmark, const ObjectNoise& noise,
+                                                double driven_m) const {
+  Eigen::Matrix3d cov = landmark.position.cov_m2 + noise.cov_m2;
+  cov.diagonal().head<2>().array() += noise.wander_variance_per_m * std::abs(driven_m - landmark.updated_at_m);
+  if (landmark.is_from_earlier_submap) {
+    cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(landmark.mostLikelyClass())];
+  }
+  return cov;
+}
+
+double AssociationModel::distanceSigma(const TrackedLandmark& landmark, const Measurement& measurement,
+                                       double driven_m) const {
+  const Eigen::Matrix3d cov = innovationCov(landmark, noiseOfObject(measurement, landmark.mostLikelyClass()), driven_m);
+  const Eigen::Vector3d d = measurement.position_m - landmark.position.mean_m;
+  return std::sqrt(std::max(0.0, d.dot(cov.ldlt().solve(d))));
+}
+
 void AssociationModel::collectReachable(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,
                                         std::vector<AssociationProblem::Reachable>& reachable) const {
   Eigen::AlignedBox2d reach;
@@ -169,11 +188,7 @@ void AssociationModel::collectCandidates(const MapHypothesis& hypothesis, const 
     const Eigen::Vector3d d = detected.position_m - landmark.position.mean_m;
     const ClassIndex object_class = landmark.mostLikelyClass();
     const ObjectNoise& own = noise_of_class(object_class);
-    Eigen::Matrix3d cov = landmark.position.cov_m2 + own.cov_m2;
-    cov.diagonal().head<2>().array() += own.wander_variance_per_m * std::abs(driven_m - landmark.updated_at_m);
-    if (landmark.is_from_earlier_submap) {
-      cov.diagonal().array() += transition_variance_m2_[static_cast<std::size_t>(object_class)];
-    }
+    const Eigen::Matrix3d cov = innovationCov(landmark, own, driven_m);
     if (isSurelyOutsideGate(cov, own.outlier_cov_m2, d)) continue;
     Candidate candidate;
     if (!evaluateMixture(cov, own.outlier_cov_m2, d, candidate)) continue;

@@ -14,6 +14,7 @@ constexpr int kPropagations = 20;
 constexpr double kConverged = 1e-4;
 constexpr double kLargestLogOdds = 50.0;
 constexpr double kLeastExistenceProb = 1e-6;
+constexpr double kLeastAlternativeProb = 0.0005;
 
 /// Its place is that of the measurement, which says nothing of whether it is there.
 bool isOnlySighting(const HypothesisLandmark& landmark) {
@@ -109,12 +110,17 @@ double AssociationPosterior::detectionProb(const Measurement& measurement, const
   return std::clamp(prob, kLowDetectionProb, 1.0 - kLowDetectionProb);
 }
 
-/// Of the landmark that a measurement was assigned to, existence is taken for given: it rests on the measurement.
+/// That a frame shows a landmark. Of the one that a measurement was assigned to, existence is taken for given: it rests
+/// on the measurement.
+double AssociationPosterior::expectedProb(const Measurement& measurement, const HypothesisLandmark& landmark,
+                                          bool is_own) const {
+  return (is_own ? 1.0 : logistic(landmark.existence.log_odds)) * detectionProb(measurement, landmark);
+}
+
 AssociationOdds AssociationPosterior::oddsOf(const Measurement& measurement, const Candidate& candidate,
                                              bool is_own) const {
   const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(candidate.landmark)];
-  const double exists = is_own ? 1.0 : logistic(landmark.existence.log_odds);
-  const double detected = detectionProb(measurement, landmark);
+  const double expected = expectedProb(measurement, landmark, is_own);
   const double log_clutter = model_.logClutterDensity(measurement);
   const auto odds = [&](double log_likelihood) {
     return std::exp(std::min(kLargestLogOdds, log_likelihood - log_clutter));
@@ -124,8 +130,8 @@ AssociationOdds AssociationPosterior::oddsOf(const Measurement& measurement, con
     result.sole = std::exp(landmark.existence.log_odds);
     return result;
   }
-  result.sole = exists * detected / (1.0 - exists * detected) * odds(candidate.log_likelihood);
-  result.part = exists * detected * config_.association.split_prob * odds(candidate.log_part_likelihood);
+  result.sole = expected / (1.0 - expected) * odds(candidate.log_likelihood);
+  result.part = expected * config_.association.split_prob * odds(candidate.log_part_likelihood);
   return result;
 }
 
@@ -139,40 +145,91 @@ double AssociationPosterior::oddsFarOff(const Measurement& measurement, const Hy
   return detected / (1.0 - detected) * density_per_m3 * std::exp(log_class - model_.logClutterDensity(measurement));
 }
 
-std::vector<JudgedAssociation> AssociationPosterior::judge(const std::vector<Measurement>& measurements,
-                                                           double driven_m, const std::vector<LandmarkId>& assigned) {
-  model_.findCandidates(map_, measurements, driven_m, problem_);
-  std::vector<std::vector<AssociationOdds>> odds;
-  odds.reserve(measurements.size());
+void AssociationPosterior::findOdds(const std::vector<Measurement>& measurements,
+                                    const std::vector<LandmarkId>& assigned) {
+  odds_.clear();
+  odds_.reserve(measurements.size());
   for (std::size_t i = 0; i < measurements.size(); ++i) {
-    odds.emplace_back().reserve(problem_.gated[i].size() + 1);
+    std::vector<AssociationOdds>& odds = odds_.emplace_back();
+    odds.reserve(problem_.gated[i].size() + 1);
     const HypothesisLandmark* own = assigned[i] == kNoLandmark ? nullptr : findLandmark(assigned[i], map_.landmarks);
     bool is_gated = false;
     for (const Candidate& candidate : problem_.gated[i]) {
       const bool is_own = own == &map_.landmarks[static_cast<std::size_t>(candidate.landmark)];
-      odds.back().push_back(oddsOf(measurements[i], candidate, is_own));
-      if (is_own && !isOnlySighting(*own)) odds.back().back().sole += oddsFarOff(measurements[i], *own);
+      odds.push_back(oddsOf(measurements[i], candidate, is_own));
+      if (is_own && !isOnlySighting(*own)) odds.back().sole += oddsFarOff(measurements[i], *own);
       is_gated = is_gated || is_own;
     }
     if (own == nullptr || is_gated) continue;
-    odds.back().push_back({static_cast<int>(own - map_.landmarks.data()), oddsFarOff(measurements[i], *own), 0.0});
+    odds.push_back({static_cast<int>(own - map_.landmarks.data()), oddsFarOff(measurements[i], *own), 0.0});
   }
-  const auto marginals = associationMarginals(odds, static_cast<int>(map_.landmarks.size()));
+}
+
+/// Whether the marginal takes the landmark's existence for given.
+bool AssociationPosterior::isGiven(const HypothesisLandmark& landmark, LandmarkId assigned) const {
+  return landmark->id == assigned && !isOnlySighting(landmark);
+}
+
+/// That a measurement is of the landmark of one of its odds, which then exists.
+double AssociationPosterior::probOf(std::size_t measurement, std::size_t choice) const {
+  const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(odds_[measurement][choice].landmark)];
+  const double exists = isGiven(landmark, assigned_[measurement]) ? logistic(landmark.existence.log_odds) : 1.0;
+  return marginals_[measurement][choice] * exists;
+}
+
+std::vector<JudgedAssociation> AssociationPosterior::judge(const std::vector<Measurement>& measurements,
+                                                           double driven_m, const std::vector<LandmarkId>& assigned) {
+  model_.findCandidates(map_, measurements, driven_m, problem_);
+  findOdds(measurements, assigned);
+  assigned_ = assigned;
+  marginals_ = associationMarginals(odds_, static_cast<int>(map_.landmarks.size()));
   std::vector<JudgedAssociation> result;
   result.reserve(measurements.size());
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     JudgedAssociation judged{0.0, 1.0};
-    for (std::size_t c = 0; c < odds[i].size(); ++c) {
-      const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(odds[i][c].landmark)];
-      const bool is_own = landmark->id == assigned[i];
+    for (std::size_t c = 0; c < odds_[i].size(); ++c) {
+      const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(odds_[i][c].landmark)];
       const double exists = logistic(landmark.existence.log_odds);
-      const bool is_given = is_own && !isOnlySighting(landmark);
-      if (is_own) judged.own_prob = is_given ? marginals[i][c] : std::min(1.0, marginals[i][c] / exists);
-      judged.nothing_prob -= marginals[i][c] * (is_given ? exists : 1.0);
+      if (landmark->id == assigned[i]) {
+        judged.own_prob = isGiven(landmark, assigned[i]) ? marginals_[i][c] : std::min(1.0, marginals_[i][c] / exists);
+      }
+      judged.nothing_prob -= probOf(i, c);
     }
     judged.nothing_prob = std::clamp(judged.nothing_prob, 0.0, 1.0);
     result.push_back(judged);
   }
+  return result;
+}
+
+std::vector<AssociationAlternative> AssociationPosterior::alternatives(std::size_t index,
+                                                                       const Measurement& measurement,
+                                                                       double driven_m) const {
+  std::vector<AssociationAlternative> result(1);
+  double nothing_prob = 1.0;
+  for (std::size_t c = 0; c < odds_[index].size(); ++c) {
+    const AssociationOdds& odds = odds_[index][c];
+    const HypothesisLandmark& landmark = map_.landmarks[static_cast<std::size_t>(odds.landmark)];
+    AssociationAlternative alternative;
+    alternative.landmark = landmark->id;
+    alternative.probability = probOf(index, c);
+    alternative.observations = landmark->observations;
+    alternative.log_count_prior = model_.logCountPrior(landmark->observations);
+    alternative.distance_sigma = model_.distanceSigma(*landmark, measurement, driven_m);
+    const double log_odds = std::log(odds.sole + odds.part);
+    if (landmark->id == assigned_[index] && isOnlySighting(landmark)) {
+      alternative.log_expected = log_odds;  // it stands where the measurement is
+    } else {
+      alternative.log_expected = logit(expectedProb(measurement, landmark, landmark->id == assigned_[index]));
+      alternative.log_class = model_.logClassLikelihood(measurement.class_index, landmark->class_probs);
+      alternative.log_place = log_odds - alternative.log_expected - alternative.log_class;
+    }
+    nothing_prob -= alternative.probability;
+    if (alternative.probability >= kLeastAlternativeProb) result.push_back(alternative);
+  }
+  result.front().probability = std::clamp(nothing_prob, 0.0, 1.0);
+  std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
+    return a.probability != b.probability ? a.probability > b.probability : a.landmark < b.landmark;
+  });
   return result;
 }
 

@@ -182,7 +182,7 @@ void Mapper::forgetSurroundings() {
   calibration_.forgetFrames();
 }
 
-FinishedSubmap Mapper::finish() {
+FinishedSubmap Mapper::finish(const ExplainLimits& explained) {
   if (frames_.empty() || !is_open_) throw std::logic_error("Mapper: there is no submap to finish");
   is_open_ = false;
   FinishedSubmap finished;
@@ -220,7 +220,9 @@ FinishedSubmap Mapper::finish() {
     useFirstNames(submap.duplicates, submap.associations);
     submap.near = findNearLandmarks(finished.frames, submap.associations, partsGate(config_));
   }
-  judgeAssociations(fused_associations, measured, landmarks, submap.associations);
+  UnsureSelection unsure(explained);
+  judgeAssociations(fused_associations, measured, landmarks, submap.associations, unsure);
+  finished.unsure = unsure.take(id_);
   submap.associations.insert(submap.associations.end(), moving_.begin(), moving_.end());
   std::stable_sort(submap.associations.begin(), submap.associations.end(), isEarlier);
   finished.alignment = tree_.mapBranching().conclude(tree_.leaves());

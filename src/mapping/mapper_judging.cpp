@@ -92,7 +92,7 @@ void Mapper::forgetSpans() {
 /// The probability of each association; what moves belongs to no landmark.
 void Mapper::judgeAssociations(const std::vector<FusedAssociations>& fused, const std::vector<Frame>& frames,
                                const std::vector<MixtureLandmark>& landmarks,
-                               std::vector<DetectionAssociation>& associations) {
+                               std::vector<DetectionAssociation>& associations, UnsureSelection& unsure) {
   noise_of_class_ = {};
   std::vector<double> driven_m;
   std::map<LandmarkId, double> seen_at_m;
@@ -141,6 +141,18 @@ void Mapper::judgeAssociations(const std::vector<FusedAssociations>& fused, cons
       }
       next->probability = inSteps(next->landmark == kNoLandmark ? 1.0 - standing_prob * (1.0 - judged[i].nothing_prob)
                                                                 : judged[i].own_prob);
+      unsure.note(next->probability, [&] {
+        return UnsureDetection{next->frame,
+                               frames[k].stamp,
+                               next->row,
+                               measurements[i].class_index,
+                               measurements[i].position_m,
+                               next->landmark,
+                               next->probability,
+                               1.0 - standing_prob,
+                               tree_.model().logClutterDensity(measurements[i]),
+                               posterior.alternatives(i, measurements[i], driven_m[k])};
+      });
     }
   }
   tree_.clutter() = std::move(learned);

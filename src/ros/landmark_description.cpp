@@ -14,13 +14,6 @@ std::string percent(double probability) {
   return formatFixed(100.0 * probability, 0) + " %";
 }
 
-std::string nameOfClass(const SemanticMap& map, std::uint16_t id) {
-  for (const SemanticClass& entry : map.classes) {
-    if (entry.id == id) return entry.name;
-  }
-  return "class " + std::to_string(id);
-}
-
 std::string classesOf(const SemanticMap& map, const Landmark& landmark) {
   std::vector<std::pair<double, std::string>> classes;
   for (std::size_t i = 0; i < std::min(map.classes.size(), landmark.class_probs.size()); ++i) {
@@ -58,6 +51,13 @@ std::string placeOf(const GaussianComponent& component) {
 }
 
 }  // namespace
+
+std::string nameOfClass(const SemanticMap& map, std::uint16_t id) {
+  for (const SemanticClass& entry : map.classes) {
+    if (entry.id == id) return entry.name;
+  }
+  return "class " + std::to_string(id);
+}
 
 const Landmark* nearestLandmark(const SemanticMap& map, const geometry_msgs::Point& point, double limit_m) {
   const Landmark* nearest = nullptr;

@@ -69,9 +69,11 @@ SlamNode::~SlamNode() {
 void SlamNode::work() {
   while (const std::optional<InputMessage> message = queue_.pop()) {
     const std::lock_guard<TicketMutex> lock(slam_mutex_);
+    slam_->explain(publisher_.wantedExplanations());
     handleSafely(*message);
     noteHandled(*message);
     other_failures_.run("looking at the estimator", [this] {
+      publisher_.publishAmbiguous(*slam_);
       noteStatus();
       warnOfDrops();
     });
@@ -166,6 +168,11 @@ void SlamNode::process(const nav_msgs::Odometry& message) {
     publisher_.forgetPose();
   }
   publisher_.publishFrame(*slam_, live);
+}
+
+void SlamNode::publishMap() {
+  publisher_.publishMap(*slam_, live_.get());
+  publisher_.publishAmbiguous(*slam_);
 }
 
 void SlamNode::noteWay(const StampedPose& T_odom_base) {

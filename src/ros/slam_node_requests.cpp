@@ -37,7 +37,7 @@ bool SlamNode::change(const std::string& service, Response& response, const Body
     } catch (const InputError& error) {
       response.message = error.what();
     }
-    publisher_.publishMap(*slam_, live_.get());
+    publishMap();
     published_odometry_ = 0;  // the trajectory may have been corrected
     noteStatus();
   });

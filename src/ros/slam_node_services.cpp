@@ -55,7 +55,9 @@ void SlamNode::advertiseServices() {
 std::unique_lock<TicketMutex> SlamNode::lockCaughtUp() {
   waitForSubscribers();
   queue_.waitUntilHandled([] { return ros::ok(); });
-  return std::unique_lock<TicketMutex>(slam_mutex_);
+  std::unique_lock<TicketMutex> lock(slam_mutex_);
+  slam_->explain(publisher_.wantedExplanations());
+  return lock;
 }
 
 /// Until the messages that the node had received before the call are in the queue. They are called in their order: what
@@ -83,7 +85,7 @@ bool SlamNode::finishSubmap(std_srvs::Trigger::Request&, std_srvs::Trigger::Resp
                                                                   : "no submap is open: no objects since the last one";
       return;
     }
-    publisher_.publishMap(*slam_, live_.get());
+    publishMap();
     published_odometry_ = 0;  // the trajectory may have been corrected
     noteStatus();
     response.message = "submap " + std::to_string(submaps - 1) + " is finished; the map holds " +
@@ -207,7 +209,7 @@ bool SlamNode::setMode(SetMode::Request& request, SetMode::Response& response) {
         response.success = true;
         response.message =
             isLocated(slam_->mode()) ? "localization" : "localization; the vehicle looks for itself in the map";
-        publisher_.publishMap(*slam_, live_.get());
+        publishMap();
       } catch (const std::logic_error&) {
         response.message = "there is no map yet that one could find oneself in; the node goes on mapping";
       }

@@ -8,6 +8,7 @@
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include "semantic_mht_slam/ros/ambiguity_description.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/graph_view.h"
 #include "semantic_mht_slam/ros/markers.h"
@@ -17,9 +18,10 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kOdometrySpacing_m = 1.0;
-constexpr double kProvisionalShare = 50.0;     // of the time that making it takes, before it is made again
-constexpr double kProvisionalPause_s = 1.0;    // a map of a town is a large message
-constexpr double kSymbolsAcross = 250.0;       // symbols of a map beside each other: still seen with all of it in view
+constexpr double kProvisionalShare = 50.0;   // of the time that making it takes, before it is made again
+constexpr double kProvisionalPause_s = 1.0;  // a map of a town is a large message
+constexpr double kSymbolsAcross = 250.0;     // symbols of a map beside each other: still seen with all of it in view
+constexpr std::uint32_t kAmbiguousQueue = 10;
 constexpr std::uint32_t kClosureQueue = 1000;  // a submap may look at many
 
 /// As large as the detector's range is by the reference's, where a symbol is a metre; larger in a large map.
@@ -51,6 +53,7 @@ SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, c
       closures_publisher_(handle.advertise<LoopClosure>("loop_closures", kClosureQueue)),
       hypotheses_publisher_(handle.advertise<HypothesisTree>("hypotheses", 10)),
       map_publisher_(handle.advertise<SemanticMap>("map", 1, true)),
+      ambiguous_publisher_(handle.advertise<AmbiguousDetections>("ambiguous_detections", kAmbiguousQueue)),
       map_(toMessage(0, config.map_frame, classes, {}, 0)),
       shown_(map_) {}
 
@@ -110,6 +113,17 @@ void SlamPublisher::publishFrame(const Slam& slam, const LiveConfig& live) {
   hypotheses_publisher_.publish(
       toMessage(*frame, config_.map_frame, slam.parts().mapper->submap(), hypothesesOf(slam)));
   slam.map().submaps().size() != published_submaps_ ? publishMap(slam, live) : publishProvisional(slam, live);
+}
+
+ExplainLimits SlamPublisher::wantedExplanations() const {
+  if (ambiguous_publisher_.getNumSubscribers() == 0) return {};
+  return {config_.ambiguous_below_prob, static_cast<std::size_t>(config_.ambiguous_most)};
+}
+
+void SlamPublisher::publishAmbiguous(Slam& slam) {
+  for (const UnsureDetections& unsure : slam.takeUnsure()) {
+    ambiguous_publisher_.publish(toAmbiguousDetections(unsure, slam.map(), classes_, config_.map_frame));
+  }
 }
 
 void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {

@@ -8,6 +8,7 @@
 #include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <utility>
 
 #include <pluginlib/class_list_macros.hpp>
 #include <std_srvs/Trigger.h>
@@ -27,8 +28,9 @@ constexpr double kClickLimit_m = 10.0;
 constexpr double kResetQuestion_s = 5.0;
 constexpr double kSilence_s = 5.0;  // diagnostics come every second
 
-QLabel* makeText(const QString& text) {
+QLabel* makeText(const QString& name, const QString& text) {
   auto* label = new QLabel(text);
+  label->setObjectName(name);
   label->setWordWrap(true);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
@@ -38,24 +40,20 @@ QLabel* makeText(const QString& text) {
 
 HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   auto* layout = new QVBoxLayout(this);
-  counters_ = makeText("no data yet");
-  legend_ = makeText("");
-  legend_->setObjectName("legend");
-  fault_label_ = makeText("");
+  counters_ = makeText("counters", "no data yet");
+  legend_ = makeText("legend", "");
+  fault_label_ = makeText("fault", "");
   fault_label_->setStyleSheet("color: #c02020");
-  landmark_ = makeText("Click a landmark with the tool Publish Point to see its history and alternatives.");
-  status_ = makeText("");
+  landmark_ = makeText("landmark", "Click a landmark with the tool Publish Point to see its history and alternatives.");
+  status_ = makeText("status", "");
   status_->setFrameStyle(QFrame::StyledPanel);
   status_->setMinimumHeight(3 * status_->fontMetrics().height());  // so that no answer moves the buttons
-  counters_->setObjectName("counters");
-  landmark_->setObjectName("landmark");
-  status_->setObjectName("status");
   layout->addWidget(counters_);
   layout->addWidget(legend_);
   layout->addWidget(fault_label_);
-  tree_view_ = new TreeView;
-  layout->addWidget(tree_view_);
+  layout->addWidget(tree_view_ = new TreeView);
   layout->addWidget(makeTable(), 1);
+  layout->addWidget(ambiguity_view_ = new AmbiguityView, 1);
   layout->addWidget(landmark_);
   layout->addWidget(makeButtons());
   layout->addWidget(status_);
@@ -138,6 +136,8 @@ void HypothesisPanel::onInitialize() {
     map_ = message;
     has_new_map_ = true;
   });
+  ambiguous_subscriber_ = handle_.subscribe<AmbiguousDetections>(
+      "ambiguous_detections", 2, [this](const AmbiguousDetectionsConstPtr& message) { ambiguous_ = message; });
   diagnostics_subscriber_ = handle_.subscribe<diagnostic_msgs::DiagnosticArray>(
       "/diagnostics", 10,
       [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { noteDiagnostics(*message); });
@@ -191,6 +191,7 @@ void HypothesisPanel::describeClicked() {
 
 void HypothesisPanel::refresh() {
   if (has_new_tree_) refreshTable();
+  if (map_ && ambiguous_) ambiguity_view_->list(*map_, *std::exchange(ambiguous_, nullptr));
   if (has_new_map_) {
     has_new_map_ = false;
     refreshLegend();

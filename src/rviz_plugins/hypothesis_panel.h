@@ -10,9 +10,11 @@
 #include <ros/ros.h>
 #include <rviz/panel.h>
 
+#include <semantic_mht_slam/AmbiguousDetections.h>
 #include <semantic_mht_slam/HypothesisTree.h>
 #include <semantic_mht_slam/SemanticMap.h>
 
+#include "ambiguity_view.h"
 #include "service_caller.h"
 #include "tree_view.h"
 #include "view_fitter.h"
@@ -24,8 +26,9 @@ class QTableWidget;
 
 namespace semantic_mht_slam {
 
-/// rviz panel: the hypotheses as a tree and as a live table, counters, the node's services as buttons, and what is
-/// known of the landmark that was clicked with the tool Publish Point.
+/// rviz panel: the hypotheses as a tree and as a live table, the ambiguous detections of the newest submap with their
+/// alternatives, counters, the node's services as buttons, and what is known of the landmark that was clicked with the
+/// tool Publish Point.
 class HypothesisPanel : public rviz::Panel {
   Q_OBJECT
 
@@ -57,10 +60,12 @@ class HypothesisPanel : public rviz::Panel {
   ros::NodeHandle handle_;
   ros::Subscriber tree_subscriber_;
   ros::Subscriber map_subscriber_;
+  ros::Subscriber ambiguous_subscriber_;
   ros::Subscriber diagnostics_subscriber_;
   ros::Subscriber click_subscriber_;
   HypothesisTree tree_;
   bool has_new_tree_ = false;
+  AmbiguousDetectionsConstPtr ambiguous_;  ///< not yet shown
   SemanticMapConstPtr map_;
   bool has_new_map_ = false;
   std::optional<std::uint64_t> clicked_;  ///< the landmark that is described
@@ -72,6 +77,7 @@ class HypothesisPanel : public rviz::Panel {
   ros::WallTime reset_asked_;
 
   QTableWidget* table_ = nullptr;
+  AmbiguityView* ambiguity_view_ = nullptr;
   TreeView* tree_view_ = nullptr;
   QLabel* counters_ = nullptr;
   QLabel* fault_label_ = nullptr;

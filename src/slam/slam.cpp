@@ -150,7 +150,8 @@ void Slam::endSubmap() {
   if (!parts_.is_fitted && !parts_.waiting.empty()) fitToDetector();
   if (!parts_.mapper || !parts_.mapper->isOpen()) return;
   const Stopwatch watch;
-  FinishedSubmap finished = parts_.mapper->finish();
+  FinishedSubmap finished = parts_.mapper->finish(explained_);
+  if (explained_.most > 0) unsure_.push_back(std::move(finished.unsure));
   noteSizes(finished.frames, finished.submap);
   parts_.mapping_s += watch.elapsed_s();
   Map& map = parts_.map;

@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/mapping/association_posterior.h"
 
+#include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -89,6 +90,14 @@ class AssociationPosteriorTest : public testing::Test {
     return posterior.judge({makeMeasurement(x, 0)}, 0.0, {assigned}).at(0);
   }
 
+  std::vector<AssociationAlternative> alternatives(std::vector<std::pair<MixtureLandmark, double>> landmarks, double x,
+                                                   LandmarkId assigned) {
+    AssociationPosterior posterior(config_, model_, rate_, std::move(landmarks));
+    const Measurement measurement = makeMeasurement(x, 0);
+    posterior.judge({measurement}, 0.0, {assigned});
+    return posterior.alternatives(0, measurement, 0.0);
+  }
+
   const MapperConfig config_;
   const ClassTable table_ = makeTable();
   const AssociationModel model_{config_, table_};
@@ -123,6 +132,37 @@ TEST_F(AssociationPosteriorTest, TheOnlySightingOfALandmarkIsNothingAsFarAsThatI
 TEST_F(AssociationPosteriorTest, WithoutALandmarkNearItIsNothing) {
   const JudgedAssociation association = judged({{makeLandmark(1, 5.0, 0.999, 20), 0.0}}, 25.0, kNoLandmark);
   EXPECT_EQ(association.nothing_prob, 1.0);
+}
+
+TEST_F(AssociationPosteriorTest, AlternativesSayWhatSpeaksForEach) {
+  MixtureLandmark other = makeLandmark(2, 5.6, 0.7, 7);
+  other.class_probs << 0.5, 0.5, 0.0;
+  const auto all = alternatives({{makeLandmark(1, 5.0, 0.999999, 20), 0.0}, {other, 0.0}}, 5.4, 1);
+  ASSERT_EQ(all.size(), 3U);
+  double sum = 0.0;
+  for (const AssociationAlternative& alternative : all) sum += alternative.probability;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+  EXPECT_EQ(all[0].landmark, 2U) << "the likeliest comes first";
+  EXPECT_EQ(all[1].landmark, 1U);
+  EXPECT_EQ(all[2].landmark, kNoLandmark);
+  EXPECT_NEAR(all[0].distance_sigma, 0.2 / std::sqrt(0.02), 1e-6);
+  EXPECT_NEAR(all[1].distance_sigma, 0.4 / std::sqrt(0.02), 1e-6);
+  EXPECT_EQ(all[0].observations, 7);
+  EXPECT_NEAR(all[0].log_count_prior, std::log(7.0), 1e-12);
+  EXPECT_LT(all[0].log_class, all[1].log_class) << "half of what it is are other classes";
+  EXPECT_LT(all[0].log_expected, all[1].log_expected) << "it may not exist";
+  for (int i = 0; i < 2; ++i) {
+    const AssociationAlternative& alternative = all[static_cast<std::size_t>(i)];
+    const double log_odds = alternative.log_expected + alternative.log_place + alternative.log_class;
+    EXPECT_NEAR(std::log(alternative.probability / all[2].probability), log_odds, 0.1) << i;
+  }
+}
+
+TEST_F(AssociationPosteriorTest, WithoutALandmarkNearNothingIsTheOnlyAlternative) {
+  const auto all = alternatives({{makeLandmark(1, 5.0, 0.999, 20), 0.0}}, 25.0, kNoLandmark);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].landmark, kNoLandmark);
+  EXPECT_EQ(all[0].probability, 1.0);
 }
 
 }  // namespace

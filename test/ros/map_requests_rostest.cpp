@@ -1,9 +1,12 @@
 #include <filesystem>
+#include <mutex>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
 #include <semantic_mht_slam/AddClosure.h>
+#include <semantic_mht_slam/AmbiguousDetections.h>
 #include <semantic_mht_slam/GetLandmarks.h>
 #include <semantic_mht_slam/LockLandmark.h>
 #include <semantic_mht_slam/RemoveClosure.h>
@@ -117,6 +120,45 @@ TEST(MapRequestsTest, ResultsOfARunningNodeAreFiles) {
   EXPECT_FALSE(std::filesystem::exists(own + "/landmarks.csv"));
   request.latitude = 91.0;
   EXPECT_NE(driving.call<SaveResults>("save_results", request).message.find("latitude"), std::string::npos);
+}
+
+TEST(MapRequestsTest, WhoListensIsToldWhatAmbiguousDetectionsMayBe) {
+  DrivingNode driving("ambiguous", {"_node/ambiguous_below:=0.9999", "_node/ambiguous_most:=20"});
+  ASSERT_TRUE(driving.isReady());
+  std::mutex mutex;
+  std::vector<AmbiguousDetections> messages;
+  const ros::Subscriber subscriber = driving.node.handle().subscribe<AmbiguousDetections>(
+      "ambiguous_detections", 100,
+      boost::function<void(const AmbiguousDetectionsConstPtr&)>([&](const AmbiguousDetectionsConstPtr& m) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        messages.push_back(*m);
+      }));
+  ASSERT_TRUE(waitFor([&] { return subscriber.getNumPublishers() > 0; }));
+  ros::WallDuration(0.5).sleep();  // the node has seen the subscriber, too
+  ASSERT_TRUE(driving.feed(0, 150));
+  ASSERT_TRUE(driving.call<std_srvs::Trigger>("finish_submap").success);
+  ros::WallDuration(1.0).sleep();
+  const std::lock_guard<std::mutex> lock(mutex);
+  ASSERT_GE(messages.size(), 4U) << "one a submap of 30 m, the last by the service";
+  std::size_t items = 0;
+  for (std::size_t k = 0; k < messages.size(); ++k) {
+    EXPECT_EQ(messages[k].submap, k);
+    EXPECT_EQ(messages[k].header.frame_id, "map");
+    EXPECT_GT(messages[k].detections, 100U);
+    EXPECT_LE(messages[k].items.size(), 20U);
+    for (const AmbiguousDetection& item : messages[k].items) {
+      ++items;
+      EXPECT_LT(item.probability, 0.9999);
+      double sum = 0.0;
+      for (const DetectionAlternative& alternative : item.alternatives) sum += alternative.probability;
+      EXPECT_NEAR(sum, 1.0, 0.01);
+      const int frame = static_cast<int>(toStamp(item.stamp) / SquareDrive::stampAt(0)) - 1;
+      const Detection& seen = SquareDrive(1).detectionsAt(frame).at(item.row);
+      const Eigen::Vector3d expected_m = SquareDrive::odometryAt(frame) * seen.position_m;
+      EXPECT_LT((Eigen::Vector3d(item.position.x, item.position.y, item.position.z) - expected_m).norm(), 2.0);
+    }
+  }
+  EXPECT_GT(items, 0U);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <QPixmap>
 #include <QPushButton>
 #include <QTableWidget>
+#include <QTreeWidget>
 #include <atomic>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -15,6 +16,7 @@
 #include <rviz/panel.h>
 #include <std_srvs/Trigger.h>
 
+#include <semantic_mht_slam/AmbiguousDetections.h>
 #include <semantic_mht_slam/HypothesisTree.h>
 #include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SetMode.h>
@@ -216,6 +218,31 @@ TEST_F(HypothesisPanelTest, ClickShowsTheLandmarkItsHistoryAndAlternatives) {
   click.header.frame_id = "odom";
   clicks.publish(click);
   EXPECT_TRUE(comesToSay("landmark", "'odom'"));
+}
+
+TEST_F(HypothesisPanelTest, AmbiguousDetectionsStandWithTheirAlternativesTheLeastSureFirst) {
+  const auto* view = panel_->findChild<QTreeWidget*>("ambiguous");
+  SemanticMap map;
+  map.classes.resize(1);
+  map.classes[0].name = "pole";
+  advertise<SemanticMap>("map").publish(map);
+  AmbiguousDetections message;
+  message.submap = 2;
+  message.ambiguous = 40;
+  message.items.resize(40);
+  for (std::size_t i = 0; i < 40; ++i) {
+    message.items[i].landmark = 100 + i;
+    message.items[i].probability = i == 7 ? 0.1 : 0.5;
+    message.items[i].alternatives.resize(2);
+    message.items[i].alternatives[0].landmark = 5;
+    message.items[i].alternatives[0].distance = 1.5;
+  }
+  advertise<AmbiguousDetections>("ambiguous_detections").publish(message);
+  ASSERT_TRUE(display([&] { return view->topLevelItemCount() == 31; })) << "a headline and the least sure";
+  EXPECT_EQ(view->topLevelItem(0)->text(0).toStdString(), "submap 2: 40 of 0 detections below 0.0 %");
+  EXPECT_EQ(view->topLevelItem(1)->text(0).toStdString(), "pole at (0.0, 0.0) m, given to 107");
+  ASSERT_EQ(view->topLevelItem(1)->childCount(), 2);
+  EXPECT_EQ(view->topLevelItem(1)->child(0)->text(2).toStdString(), "1.5 sigma");
 }
 
 TEST_F(HypothesisPanelTest, ButtonsCallTheServicesShowTheAnswerAndNeverHoldTheDisplay) {

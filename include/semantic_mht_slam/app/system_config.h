@@ -23,6 +23,8 @@ struct NodeConfig {
   double tf_timeout_s = 2.0;
   double trajectory_period_s = 0.5;
   int trajectory_poses = 20000;
+  double ambiguous_below_prob = 0.98;
+  int ambiguous_most = 100;
   double reset_after_jump_back_s = 1.0;
   bool publishes_tf = true;
   std::string map;         ///< a map file; empty: none

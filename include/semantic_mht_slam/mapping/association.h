@@ -59,6 +59,12 @@ class AssociationModel {
   void findCandidates(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements, double driven_m,
                       AssociationProblem& problem) const;
 
+  /// Mahalanobis distance between a measurement and a landmark.
+  double distanceSigma(const TrackedLandmark& landmark, const Measurement& measurement, double driven_m) const;
+
+  /// log g(N), by which a landmark with so many detections is preferred.
+  double logCountPrior(int observations) const;
+
   /// log P(detected class | class probabilities).
   double logClassLikelihood(ClassIndex detected, const ClassProbs& probs) const;
 
@@ -108,7 +114,7 @@ class AssociationModel {
   /// Fills all of a candidate but the landmark and what its class says; false: outside the gate.
   bool evaluateMixture(const Eigen::Matrix3d& cov, const Eigen::Matrix3d& outlier_cov_m2, const Eigen::Vector3d& d,
                        Candidate& candidate) const;
-  double logCountPrior(int observations) const;
+  Eigen::Matrix3d innovationCov(const TrackedLandmark& landmark, const ObjectNoise& noise, double driven_m) const;
   void addDirichletCosts(const MapHypothesis& hypothesis, AssociationProblem& problem) const;
   void addLikelihoodCosts(const std::vector<Measurement>& measurements, AssociationProblem& problem) const;
   void addDistanceCosts(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,

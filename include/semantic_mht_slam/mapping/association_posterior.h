@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/mapping/detection_rate.h"
 #include "semantic_mht_slam/mapping/hypothesis.h"
 #include "semantic_mht_slam/mapping/mapper_config.h"
+#include "semantic_mht_slam/mapping/unsure_detections.h"
 
 namespace semantic_mht_slam {
 
@@ -43,9 +44,18 @@ class AssociationPosterior {
   std::vector<JudgedAssociation> judge(const std::vector<Measurement>& measurements, double driven_m,
                                        const std::vector<LandmarkId>& assigned);
 
+  /// What a measurement of the frame that was judged last may be of, nothing included, by falling probability; less
+  /// than half a thousandth is left out.
+  std::vector<AssociationAlternative> alternatives(std::size_t index, const Measurement& measurement,
+                                                   double driven_m) const;
+
  private:
   double detectionProb(const Measurement& measurement, const HypothesisLandmark& landmark) const;
+  double expectedProb(const Measurement& measurement, const HypothesisLandmark& landmark, bool is_own) const;
   double oddsFarOff(const Measurement& measurement, const HypothesisLandmark& landmark) const;
+  void findOdds(const std::vector<Measurement>& measurements, const std::vector<LandmarkId>& assigned);
+  bool isGiven(const HypothesisLandmark& landmark, LandmarkId assigned) const;
+  double probOf(std::size_t measurement, std::size_t choice) const;
   AssociationOdds oddsOf(const Measurement& measurement, const Candidate& candidate, bool is_own) const;
 
   const MapperConfig& config_;
@@ -53,6 +63,10 @@ class AssociationPosterior {
   const DetectionRate& rate_;
   MapHypothesis map_;
   AssociationProblem problem_;
+  // Of the frame that was judged last, by measurement:
+  std::vector<LandmarkId> assigned_;
+  std::vector<std::vector<AssociationOdds>> odds_;
+  std::vector<std::vector<double>> marginals_;
 };
 
 }  // namespace semantic_mht_slam

@@ -18,6 +18,7 @@
 #include "semantic_mht_slam/mapping/mapper_config.h"
 #include "semantic_mht_slam/mapping/moving_objects.h"
 #include "semantic_mht_slam/mapping/station_keeping.h"
+#include "semantic_mht_slam/mapping/unsure_detections.h"
 #include "semantic_mht_slam/models/frame.h"
 
 namespace semantic_mht_slam {
@@ -48,6 +49,7 @@ struct FinishedSubmap {
   Submap submap;
   std::vector<Frame> frames;              ///< calibrated (`Mapper::calibrated`)
   std::optional<MapAlignment> alignment;  ///< against the earlier map, if there was one and it fits somewhere
+  UnsureDetections unsure;                ///< as far as they were asked for
 };
 
 /// Builds submaps: stretches of fixed travelled length, each with a hypothesis tree of its own (paper, section II).
@@ -68,8 +70,9 @@ class Mapper {
   /// True if the submap would be full with a frame at `T_odom_base`: the frame belongs to the next one.
   bool isFullAt(const Pose& T_odom_base) const;
 
-  /// Ends the submap. Only in one that has a frame, else throws std::logic_error.
-  [[nodiscard]] FinishedSubmap finish();
+  /// Ends the submap. Only in one that has a frame, else throws std::logic_error. What is explained of its detections
+  /// changes nothing else.
+  [[nodiscard]] FinishedSubmap finish(const ExplainLimits& explained = {});
 
   /// The submaps and landmarks that begin from now on are named after these. Only between submaps, else throws
   /// std::logic_error.
@@ -125,8 +128,8 @@ class Mapper {
   double movingProb(std::size_t frame, std::size_t detection) const;
   void judgeMotion(const std::vector<FusedAssociations>& associations, std::vector<MixtureLandmark>& landmarks);
   void judgeAssociations(const std::vector<FusedAssociations>& fused, const std::vector<Frame>& frames,
-                         const std::vector<MixtureLandmark>& landmarks,
-                         std::vector<DetectionAssociation>& associations);
+                         const std::vector<MixtureLandmark>& landmarks, std::vector<DetectionAssociation>& associations,
+                         UnsureSelection& unsure);
   void forgetSpans();
   bool learnsConfusion() const;
   void learnConfusion(const std::vector<FusedAssociations>& associations,

@@ -92,6 +92,7 @@ class SlamNode {
 
   // With the estimator locked.
   void startAgain();
+  void publishMap();
 
   // Subscribers, diagnostics and the timer of overdue poses, in the spinner thread.
   void publishOverduePose();

@@ -39,6 +39,12 @@ class SlamPublisher {
   /// Objects and hypotheses of the newest frame if it is a new one, and the map if a submap was finished.
   void publishFrame(const Slam& slam, const LiveConfig& live);
 
+  /// What is to be explained of the detections: nothing while nobody listens.
+  ExplainLimits wantedExplanations() const;
+
+  /// Detections of the submaps that ended whose landmarks are not sure. Takes them from `slam`.
+  void publishAmbiguous(Slam& slam);
+
   /// The landmarks of the finished submaps.
   void publishMap(const Slam& slam, const LiveConfig& live);
 
@@ -93,6 +99,7 @@ class SlamPublisher {
   ros::Publisher closures_publisher_;
   ros::Publisher hypotheses_publisher_;
   ros::Publisher map_publisher_;
+  ros::Publisher ambiguous_publisher_;
   CorrectionFollower correction_;
   std::optional<Pose> T_map_odom_;   ///< of the newest pose
   std::optional<Stamp> pose_stamp_;  ///< of the newest pose; none goes out that is not newer

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/common/config.h"
@@ -161,6 +162,13 @@ class Slam {
   /// or before any odometry; true if it had one.
   bool expectAt(const Pose& T_map_base, double stddev_m);
 
+  /// What is explained of the detections of submaps that end from now on (see `takeUnsure`); by default nothing.
+  void explain(const ExplainLimits& limits) { explained_ = limits; }
+
+  /// Detections of the submaps that ended since the last call whose landmarks are not sure. Names are those that the
+  /// submap gave.
+  std::vector<UnsureDetections> takeUnsure() { return std::exchange(unsure_, {}); }
+
   /// Correction of the odometry: T_map_base = T_map_odom * T_odom_base.
   Pose T_map_odom() const;
 
@@ -183,6 +191,8 @@ class Slam {
   ClassTable classes_;
   SlamConfig fitted_;  ///< with the lengths of the detector
   SlamParts parts_;
+  ExplainLimits explained_;
+  std::vector<UnsureDetections> unsure_;
 };
 
 /// True if `next` may be the odometry after the newest of the same drive (see `OdometryContinuity`), within a minute.
