@@ -32,10 +32,10 @@ struct EstimatorStatus {
   GraphStatus graph;
   InputOddities oddities;
   std::string objects_fixed_frame;  ///< in which the newest objects are given, if it does not move with the robot
-  std::size_t odometry_jumps = 0;  ///< each begins a session
-  double driven_m = 0.0;           ///< by the frames of the map
-  double lost_m = 0.0;             ///< driven since the vehicle last knew where it is
-  double far_m = 0.0;              ///< as far as the detector sees, about
+  std::size_t odometry_jumps = 0;   ///< each begins a session
+  double driven_m = 0.0;            ///< by the frames of the map
+  double lost_m = 0.0;              ///< driven since the vehicle last knew where it is
+  double far_m = 0.0;               ///< as far as the detector sees, about
 };
 
 /// Times that frames took, of the last 1000.
