@@ -72,7 +72,11 @@ std::vector<std::string> SensorTransforms::ancestors(std::string frame) const {
 /// What the way through the tree from a frame to the robot passes.
 SensorTransforms::Side SensorTransforms::sideOf(const std::string& frame) const {
   const std::vector<std::string> up = ancestors(frame);
-  const std::vector<std::string> down = ancestors(base_frame_);
+  std::vector<std::string> down = ancestors(base_frame_);
+  if (std::find(down.begin(), down.end(), odom_frame_) == down.end()) {  // the messages of the odometry tie them alone
+    const std::vector<std::string> of_odometry = ancestors(odom_frame_);
+    down.insert(down.end(), of_odometry.begin(), of_odometry.end());
+  }
   const auto top = std::find_first_of(up.begin(), up.end(), down.begin(), down.end());
   const bool is_connected = top != up.end();
   const auto down_end = is_connected ? std::find(down.begin(), down.end(), *top) + 1 : down.begin();

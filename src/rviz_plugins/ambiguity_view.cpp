@@ -11,7 +11,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr std::size_t kMostShown = 30;
-constexpr int kMinHeight_px = 90;
+constexpr int kMinHeight_px = 20;
 
 QStringList toCells(const std::vector<std::string>& texts) {
   QStringList cells;

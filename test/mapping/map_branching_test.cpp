@@ -79,7 +79,7 @@ Detections detect(const std::vector<Object>& objects, double x_m, const Options&
 /// The first pass's landmarks in the odometry frame.
 std::vector<MixtureLandmark> landmarksOf(const std::vector<FinishedSubmap>& submaps) {
   std::map<LandmarkId, MixtureLandmark> by_id;
-  for (const auto& [submap, frames, alignment] : submaps) {
+  for (const auto& [submap, frames, alignment, unsure] : submaps) {
     for (MixtureLandmark landmark : submap.landmarks) {
       landmark.position.mean_m = submap.T_odom_submap * landmark.position.mean_m;
       by_id[landmark.id] = landmark;
@@ -171,7 +171,7 @@ std::map<int, LandmarkId> landmarkOfObject(const Passes& passes, const std::vect
   Identity identity;
   ClosureId closure(0);
   for (const auto* list : {&passes.first, &passes.second}) {
-    for (const auto& [submap, frames, alignment] : *list) {
+    for (const auto& [submap, frames, alignment, unsure] : *list) {
       identity.add(submap);
       if (!alignment) continue;
       identity.add(closure, alignment->pairs);
@@ -180,7 +180,7 @@ std::map<int, LandmarkId> landmarkOfObject(const Passes& passes, const std::vect
     }
   }
   std::map<int, std::map<LandmarkId, int>> votes;
-  for (const auto& [submap, frames, alignment] : submaps) {
+  for (const auto& [submap, frames, alignment, unsure] : submaps) {
     for (const DetectionAssociation& association : submap.associations) {
       const int truth = passes.truth.at(association.frame).at(static_cast<std::size_t>(association.row));
       ++votes[truth][identity.landmarkOf(association.landmark)];
@@ -206,7 +206,7 @@ TEST_P(MapBranchingSeeds, TheTrueOffsetIsFoundAndLandmarksHaveTheIdsOfTheEarlier
   options.T_earlier_submap = shifted(2.4, -1.8, 0.035);
   const Passes passes = drive(GetParam(), options);
   ASSERT_EQ(passes.second.size(), 2U);
-  for (const auto& [submap, frames, alignment] : passes.second) {
+  for (const auto& [submap, frames, alignment, unsure] : passes.second) {
     ASSERT_TRUE(alignment.has_value());
     EXPECT_TRUE(alignment->is_accepted);
     const Pose error = options.T_earlier_submap.inverse() * alignment->T_earlier_submap;
@@ -231,7 +231,7 @@ TEST_P(MapBranchingSeeds, APlaceThatWasNotVisitedStaysNew) {
   Options options;
   options.is_same_street = false;
   const Passes passes = drive(GetParam(), options);
-  for (const auto& [submap, frames, alignment] : passes.second) {
+  for (const auto& [submap, frames, alignment, unsure] : passes.second) {
     EXPECT_FALSE(alignment && alignment->is_accepted);
     for (const MixtureLandmark& landmark : submap.landmarks) {
       EXPECT_GE(landmark.first_submap.index() + 1, submap.id.index());

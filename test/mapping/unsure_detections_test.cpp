@@ -78,7 +78,9 @@ TEST(UnsureDetectionsTest, WhatIsUnsureIsExplainedIfAskedForAndChangesNothing) {
   const std::vector<Detections> frames = drivePastPoles();
   std::vector<FinishedSubmap> finished;
   for (const ExplainLimits& limits : {ExplainLimits{}, ExplainLimits{0.98, 40}}) {
-    Mapper mapper({}, ClassTable({ClassInfo()}, "test"));
+    ClassInfo pole;
+    pole.name = "pole";
+    Mapper mapper({}, ClassTable({pole}, "test"));
     Rng rng(1);
     for (std::size_t f = 0; f < 25; ++f) {
       const Pose T_odom_base{Eigen::Quaterniond::Identity(), {static_cast<double>(f), 0.0, 0.0}};
