@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 
 namespace semantic_mht_slam {
-namespace {}  // namespace
 
 bool isCovariance(const Eigen::Matrix3d& matrix) {
   if (!matrix.allFinite()) return false;
