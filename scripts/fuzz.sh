@@ -13,6 +13,9 @@ instrumented_configure
 [ "${#targets[@]}" -gt 0 ] || mapfile -t targets < <(instrumented_targets 'fuzz_(.+)')
 instrumented_build "${targets[@]/#/fuzz_}"
 
+# Seconds of processor time that the programs run from here have used
+processor_s() { awk '{ print int(($16 + $17) / hertz) }' hertz="$(getconf CLK_TCK)" /proc/$$/stat; }
+
 failed=0
 for target in "${targets[@]}"; do
   corpus="$INSTRUMENTED/corpus/$target"
@@ -21,13 +24,14 @@ for target in "${targets[@]}"; do
   export LLVM_PROFILE_FILE=/dev/null  # coverage is that of the gtests
   SMHT_FUZZ_SEEDS="$corpus" "$INSTRUMENTED/fuzz_$target" -runs=1 >/dev/null 2>&1
   log="$INSTRUMENTED/$target.log"
+  begun=$(processor_s)
   if ! (cd "$findings" && "$INSTRUMENTED/fuzz_$target" -max_total_time="$seconds" -rss_limit_mb=2048 -timeout=20 \
     -print_final_stats=1 -close_fd_mask=1 "$corpus") >"$log" 2>&1; then
     echo "fuzz: $target found something: $findings, $log" >&2
     failed=1
   fi
   executed=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -n 1)
-  echo "fuzz: $target executed ${executed:-0} inputs in $seconds s"
+  echo "fuzz: $target executed ${executed:-0} inputs in $(( $(processor_s) - begun )) s of processor time"
   [ "${executed:-0}" -gt 0 ] || failed=1
 done
 exit "$failed"

@@ -8,6 +8,8 @@
 #include <ros/ros.h>
 #include <ros/service.h>
 
+#include "semantic_mht_slam/ros/service_call.h"
+
 namespace semantic_mht_slam {
 
 /// Calls services, one at a time, in a thread of its own, so that no service that thinks long holds up the display. The
@@ -19,10 +21,11 @@ class ServiceCaller {
   void call(const std::string& name, const typename Service::Request& request) {
     if (!begin(name)) return;
     std::thread([state = state_, name, request]() mutable {
-      typename Service::Response response;
+      Service call;
+      call.request = request;
       if (!ros::service::exists(name, false)) return end(*state, name + ": no node offers this service");
-      if (!ros::service::call(name, request, response)) return end(*state, name + ": the call failed");
-      end(*state, name + (response.success ? ": " : " refused: ") + response.message);
+      if (!callService(name, call)) return end(*state, name + ": the call failed");
+      end(*state, name + (call.response.success ? ": " : " refused: ") + call.response.message);
     }).detach();
   }
 

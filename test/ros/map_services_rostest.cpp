@@ -17,6 +17,7 @@
 
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/driving_node.h"
 #include "support/spinner.h"
@@ -154,12 +155,12 @@ TEST(MapServicesTest, NodeThatIsKilledWhileSavingLeavesAWholeFile) {
     DrivingNode driving("killed_" + std::to_string(trial));
     ASSERT_TRUE(driving.isReady());
     ASSERT_TRUE(driving.load(big).success);
-    ros::ServiceClient client = driving.node.handle().serviceClient<SaveMap>("save_map");
-    ASSERT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+    const std::string service = driving.node.handle().resolveName("save_map");
+    ASSERT_TRUE(ros::service::waitForService(service, ros::Duration(10.0)));
     auto saving = std::async(std::launch::async, [&] {
       SaveMap save;
       save.request.path = path;
-      client.call(save);
+      callService(service, save);
     });
     ros::WallDuration(0.12 * trial / kills).sleep();
     EXPECT_GE(driving.node.process().stop(SIGKILL, 5.0), 0.0);
@@ -223,13 +224,13 @@ TEST(MapServicesTest, NothingIsLostWhileAMapIsLoaded) {
   const std::string path = writeMap(folder / "heavy.bag", 100, 20);
   DrivingNode driving("listening", {"_node/queue_size:=100000"});
   ASSERT_TRUE(driving.isReady());
-  ros::ServiceClient client = driving.node.handle().serviceClient<LoadMap>("load_map");
-  ASSERT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+  const std::string service = driving.node.handle().resolveName("load_map");
+  ASSERT_TRUE(ros::service::waitForService(service, ros::Duration(10.0)));
   std::atomic<bool> is_loaded{false};
   auto loading = std::async(std::launch::async, [&] {
     LoadMap load;
     load.request.path = path;
-    const bool is_answered = client.call(load) && load.response.success;
+    const bool is_answered = callService(service, load) && load.response.success;
     is_loaded = true;
     return is_answered;
   });
@@ -247,12 +248,12 @@ TEST(MapServicesTest, InterruptEndsTheNodeWithinTwoSecondsWhileItLoads) {
   const std::string path = writeMap(folder / "heavy.bag", 100, 150);
   DrivingNode driving("loading");
   ASSERT_TRUE(driving.isReady());
-  ros::ServiceClient client = driving.node.handle().serviceClient<LoadMap>("load_map");
-  ASSERT_TRUE(client.waitForExistence(ros::Duration(10.0)));
+  const std::string service = driving.node.handle().resolveName("load_map");
+  ASSERT_TRUE(ros::service::waitForService(service, ros::Duration(10.0)));
   auto loading = std::async(std::launch::async, [&] {
     LoadMap load;
     load.request.path = path;
-    return client.call(load) && load.response.success;
+    return callService(service, load) && load.response.success;
   });
   ros::WallDuration(0.5).sleep();
   const double seconds = driving.node.process().stop(SIGINT, 20.0);

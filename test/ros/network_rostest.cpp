@@ -20,6 +20,7 @@
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
 #include "semantic_mht_slam/models/labelled_cloud.h"
+#include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/cloud_message.h"
 #include "support/running_node.h"
@@ -133,12 +134,11 @@ TEST(NetworkTest, ImagesAndCloudsBecomeLandmarks) {
     ASSERT_TRUE(waitFor([&] { return arrays == i + 1; }, 60.0)) << i;
   }
   EXPECT_GT(objects, 12U) << "in six equal frames";
-  ros::ServiceClient finish = handle.serviceClient<std_srvs::Trigger>("finish_submap");
   std_srvs::Trigger trigger;
-  ASSERT_TRUE(finish.call(trigger) && trigger.response.success) << trigger.response.message;
-  ros::ServiceClient client = handle.serviceClient<GetLandmarks>("get_landmarks");
+  ASSERT_TRUE(callService(handle.resolveName("finish_submap"), trigger) && trigger.response.success)
+      << trigger.response.message;
   GetLandmarks all;
-  ASSERT_TRUE(client.call(all) && all.response.success) << all.response.message;
+  ASSERT_TRUE(callService(handle.resolveName("get_landmarks"), all) && all.response.success) << all.response.message;
   EXPECT_GE(all.response.landmarks.size(), 3U);
   for (const Landmark& landmark : all.response.landmarks) EXPECT_GT(landmark.position.x, 0.0) << "before the camera";
 }

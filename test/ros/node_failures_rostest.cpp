@@ -10,6 +10,8 @@
 
 #include <semantic_mht_slam/SetMode.h>
 
+#include "semantic_mht_slam/ros/service_call.h"
+
 #include "support/running_node.h"
 #include "support/spinner.h"
 
@@ -72,10 +74,10 @@ TEST(NodeFailuresTest, NumbersThatNobodyShouldSendAreRefusedAndNamed) {
   feed(node, 0, 40);
   ASSERT_TRUE(node.comesToSay("objects", "frames used", "40"));
   std_srvs::Trigger finish;
-  ASSERT_TRUE(ros::service::call("/hostile/finish_submap", finish) && finish.response.success);
+  ASSERT_TRUE(callService("/hostile/finish_submap", finish) && finish.response.success);
   SetMode mode;
   mode.request.mode = SetMode::Request::LOCALIZATION;
-  ASSERT_TRUE(ros::service::call("/hostile/set_mode", mode) && mode.response.success);
+  ASSERT_TRUE(callService("/hostile/set_mode", mode) && mode.response.success);
 
   initial_pose.publish(initialPose(kInfinity));
   EXPECT_TRUE(node.comesToReport("estimator", "initialpose is refused: its covariance is not finite"));
@@ -143,7 +145,7 @@ TEST(NodeFailuresTest, AFailureDropsItsMessageAndThreeInARowLeaveTheOdometryAtWo
   EXPECT_EQ(node.value("objects", "frames used"), "40");
 
   std_srvs::Trigger reset;
-  ASSERT_TRUE(ros::service::call("/failing/reset", reset) && reset.response.success);
+  ASSERT_TRUE(callService("/failing/reset", reset) && reset.response.success);
   feed(node, 60, 80);
   EXPECT_TRUE(node.comesToSay("objects", "frames used", "20")) << "of the new map";
   EXPECT_TRUE(poses.comesTo(80));

@@ -13,6 +13,8 @@
 #include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SetMode.h>
 
+#include "semantic_mht_slam/ros/service_call.h"
+
 #include "support/running_node.h"
 #include "support/spinner.h"
 
@@ -182,24 +184,13 @@ TEST(NodeFaultsTest, InterruptEndsTheNodeWithinTwoSecondsUnderLoad) {
   EXPECT_EQ(node.process().exitCode(), 0);
 }
 
-/// Calls a service of a node and returns what it answers; fails the test if it does not answer.
-template <class Service>
-typename Service::Response call(RunningNode& node, const std::string& name, typename Service::Request request = {}) {
-  typename Service::Response response;
-  ros::ServiceClient client = node.handle().serviceClient<Service>(name);
-  EXPECT_TRUE(client.waitForExistence(ros::Duration(10.0)));
-  EXPECT_TRUE(client.call(request, response)) << name;
-  EXPECT_FALSE(response.message.empty());
-  return response;
-}
-
 TEST(NodeServicesTest, FinishSubmapAndResetAnswerAndDoWhatTheySay) {
   RunningNode node("services");
   SemanticMap map;
   const auto subscriber = node.handle().subscribe<SemanticMap>(
       "map", 10, boost::function<void(const SemanticMapConstPtr&)>([&](const SemanticMapConstPtr& m) { map = *m; }));
   ASSERT_TRUE(node.isReady());
-  EXPECT_FALSE(call<std_srvs::Trigger>(node, "finish_submap").success) << "nothing was seen yet";
+  EXPECT_FALSE(node.call<std_srvs::Trigger>("finish_submap").success) << "nothing was seen yet";
   for (int i = 0; i < 30; ++i) {
     node.sendOdometry(0.01 * i);
     node.sendObjects(0.01 * i);
@@ -207,12 +198,12 @@ TEST(NodeServicesTest, FinishSubmapAndResetAnswerAndDoWhatTheySay) {
   }
   ASSERT_TRUE(node.comesToSay("objects", "frames used", "30"));
   EXPECT_EQ(node.value("estimator", "submaps"), "0");
-  EXPECT_TRUE(call<std_srvs::Trigger>(node, "finish_submap").success);
+  EXPECT_TRUE(node.call<std_srvs::Trigger>("finish_submap").success);
   EXPECT_TRUE(waitFor([&] { return map.submaps == 1U; }));
   EXPECT_TRUE(node.comesToSay("estimator", "submaps", "1"));
-  EXPECT_FALSE(call<std_srvs::Trigger>(node, "finish_submap").success) << "nothing was seen since";
+  EXPECT_FALSE(node.call<std_srvs::Trigger>("finish_submap").success) << "nothing was seen since";
 
-  EXPECT_TRUE(call<std_srvs::Trigger>(node, "reset").success);
+  EXPECT_TRUE(node.call<std_srvs::Trigger>("reset").success);
   EXPECT_TRUE(waitFor([&] { return map.submaps == 0U; })) << "the latched map is empty again";
   EXPECT_TRUE(node.comesToSay("odometry", "used", "0"));
   node.sendOdometry(0.0);
@@ -236,7 +227,7 @@ TEST(NodeServicesTest, LiveParametersChangeTheMarkersAtOnceAndWrongOnesStayAsThe
     ros::WallDuration(0.002).sleep();
   }
   ASSERT_TRUE(node.comesToSay("objects", "frames used", "30"));
-  ASSERT_TRUE(call<std_srvs::Trigger>(node, "finish_submap").success);
+  ASSERT_TRUE(node.call<std_srvs::Trigger>("finish_submap").success);
   ASSERT_TRUE(node.comesToSay("estimator", "landmarks", "3"));
   EXPECT_EQ(labels, 0U);
 
@@ -247,7 +238,7 @@ TEST(NodeServicesTest, LiveParametersChangeTheMarkersAtOnceAndWrongOnesStayAsThe
   change.request.config.strs.resize(1);
   change.request.config.strs[0].name = "correction";
   change.request.config.strs[0].value = "sometimes";
-  ASSERT_TRUE(ros::service::call(node.fullName() + "/node/live/set_parameters", change));
+  ASSERT_TRUE(callService(node.fullName() + "/node/live/set_parameters", change));
   EXPECT_TRUE(waitFor([&] { return labels == 3U; }));
   ASSERT_EQ(change.response.config.strs.size(), 1U);
   EXPECT_EQ(change.response.config.strs[0].value, "limited") << "there is no policy 'sometimes'";
@@ -258,11 +249,11 @@ TEST(NodeServicesTest, SetModeRefusesWhatThereIsNot) {
   ASSERT_TRUE(node.isReady());
   SetMode::Request request;
   request.mode = SetMode::Request::MAPPING;
-  EXPECT_TRUE(call<SetMode>(node, "set_mode", request).success);
+  EXPECT_TRUE(node.call<SetMode>("set_mode", request).success);
   request.mode = SetMode::Request::LOCALIZATION;
-  EXPECT_FALSE(call<SetMode>(node, "set_mode", request).success) << "without a loaded map";
+  EXPECT_FALSE(node.call<SetMode>("set_mode", request).success) << "without a loaded map";
   request.mode = 7;
-  EXPECT_FALSE(call<SetMode>(node, "set_mode", request).success);
+  EXPECT_FALSE(node.call<SetMode>("set_mode", request).success);
 }
 
 }  // namespace

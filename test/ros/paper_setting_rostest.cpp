@@ -17,6 +17,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/running_node.h"
 #include "support/simulated_rounds.h"
@@ -100,7 +101,7 @@ class PaperSettingTest : public ::testing::Test {
         },
         120.0));
     std_srvs::Trigger finish;
-    ASSERT_TRUE(ros::service::call("finish_submap", finish));
+    ASSERT_TRUE(callService("finish_submap", finish));
     ASSERT_TRUE(finish.response.success) << finish.response.message;
   }
 
@@ -142,7 +143,7 @@ TEST_F(PaperSettingTest, ANodeGivesMapClosuresFeaturesAndTrajectoryAsOffline) {
   SaveMap save;
   const TemporaryFolder folder;
   save.request.path = folder / "map.bag";
-  ASSERT_TRUE(ros::service::call("save_map", save));
+  ASSERT_TRUE(callService("save_map", save));
   ASSERT_TRUE(save.response.success) << save.response.message;
   const LoadedMap loaded = readMapFile(save.request.path, config, classes, [] { return true; });
   EXPECT_TRUE(loaded.has_same_parameters) << "the node runs with the file's parameters and no others";

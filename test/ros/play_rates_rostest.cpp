@@ -12,6 +12,7 @@
 
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/ros/bag_file.h"
+#include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/running_node.h"
 #include "support/spinner.h"
@@ -73,10 +74,10 @@ std::string mapOfReplay(const std::string& bag, int rate, bool is_busy, const st
     EXPECT_TRUE(node.comesToSay("objects", "messages", std::to_string(kFrames)));
   }
   std_srvs::Trigger finish;
-  EXPECT_TRUE(ros::service::call("/" + name + "/finish_submap", finish) && finish.response.success);
+  EXPECT_TRUE(callService("/" + name + "/finish_submap", finish) && finish.response.success);
   SaveMap save;
   save.request.path = path;
-  EXPECT_TRUE(ros::service::call("/" + name + "/save_map", save) && save.response.success) << save.response.message;
+  EXPECT_TRUE(callService("/" + name + "/save_map", save) && save.response.success) << save.response.message;
   EXPECT_TRUE(node.comesToSay("objects", "frames used", std::to_string(kFrames - 1))) << "all after the first odometry";
   return readFile(path);
 }

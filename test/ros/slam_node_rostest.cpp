@@ -19,6 +19,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/recordings.h"
 #include "support/spinner.h"
@@ -88,7 +89,7 @@ class SlamNodeTest : public ::testing::Test {
   void finishSubmap() {
     trajectory_ = {};
     std_srvs::Trigger finish;
-    ASSERT_TRUE(ros::service::call("finish_submap", finish));
+    ASSERT_TRUE(callService("finish_submap", finish));
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20.0);
     while (trajectory_.poses.empty() && ros::WallTime::now() < deadline) ros::WallDuration(0.05).sleep();
   }
@@ -209,7 +210,7 @@ constexpr std::uint16_t kPoleId = 80;  // of config/classes_semantic_kitti.yaml
 
 TEST_F(SlamNodeTest, ObjectsThatOvertakeTheOdometryOfAJumpBelongToTheNewMap) {
   std_srvs::Trigger reset;  // whoever is lost would look for the place instead of beginning a new map
-  ASSERT_TRUE(ros::service::call("reset", reset) && reset.response.success);
+  ASSERT_TRUE(callService("reset", reset) && reset.response.success);
   ros::Publisher odometry = handle_.advertise<nav_msgs::Odometry>("odometry", 100);
   ros::Publisher objects = handle_.advertise<SemanticObjectArray>("objects", 100);
   const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10.0);

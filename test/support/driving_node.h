@@ -55,12 +55,7 @@ class DrivingNode {
 
   template <class Service>
   typename Service::Response call(const std::string& name, typename Service::Request request = {}) {
-    typename Service::Response response;
-    ros::ServiceClient client = node.handle().serviceClient<Service>(name);
-    EXPECT_TRUE(client.waitForExistence(ros::Duration(10.0)));
-    EXPECT_TRUE(client.call(request, response)) << name;
-    EXPECT_FALSE(response.message.empty());
-    return response;
+    return node.call<Service>(name, request);
   }
 
   SaveMap::Response save(const std::string& path) {

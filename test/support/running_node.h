@@ -8,12 +8,14 @@
 #include <vector>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/ros.h>
 
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
 #include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/ros_process.h"
 
@@ -48,6 +50,17 @@ class RunningNode {
   ros::NodeHandle& handle() { return handle_; }
   std::string fullName() const { return "/" + name_ + "/" + name_; }
   RosProcess& process() { return *process_; }
+
+  /// Calls a service of the node and returns what it answers; fails the test if it does not answer.
+  template <class Service>
+  typename Service::Response call(const std::string& name, typename Service::Request request = {}) {
+    Service call;
+    call.request = request;
+    EXPECT_TRUE(ros::service::waitForService(handle_.resolveName(name), ros::Duration(10.0)));
+    EXPECT_TRUE(callService(handle_.resolveName(name), call)) << name;
+    EXPECT_FALSE(call.response.message.empty());
+    return call.response;
+  }
 
   /// Waits until the node listens and reports.
   bool isReady() {
