@@ -95,9 +95,12 @@ std::vector<MixtureLandmark> landmarksOf(const Slam& slam, const MapUncertainty&
 
 std::vector<MixtureLandmark> provisionalLandmarksOf(const Slam& slam) {
   const SlamParts& parts = slam.parts();
-  if (!parts.mapper || !parts.mapper->isOpen()) return {};
+  const std::optional<MappedAhead> open = parts.mapper && parts.mapper->isOpen()
+                                              ? MappedAhead{parts.mapper->hypotheses(), parts.prediction.prior.T_a_b}
+                                              : slam.mapAhead();
+  if (!open) return {};
   std::vector<MixtureLandmark> landmarks =
-      landmarksBeyond(parts.map, fuseHypotheses(parts.mapper->hypotheses()), parts.prediction.prior.T_a_b);
+      landmarksBeyond(parts.map, fuseHypotheses(open->hypotheses), open->T_map_submap);
   const UncertainPose here = parts.latest.value_or(UncertainPose{Pose::identity(), unknownPoseCov()});
   for (MixtureLandmark& landmark : landmarks) {
     const Eigen::Vector3d lever_m = landmark.position.mean_m - here.T_world_base.translation_m;

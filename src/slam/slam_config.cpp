@@ -96,4 +96,18 @@ void Slam::fitToDetector() {
   parts_.driven = driven;
 }
 
+std::optional<MappedAhead> Slam::mapAhead() const {
+  if (parts_.waiting.empty()) return std::nullopt;
+  const SlamConfig fitted = fittedTo(config_, parts_.detector_range.factor());
+  Mapper mapper(fitted.mapper, classes_, fitted.registration);
+  Rng rng = parts_.rng;
+  const Pose& T_odom_submap = parts_.waiting.front().T_odom_base;
+  mapper.begin(T_odom_submap);
+  for (const Frame& frame : parts_.waiting) {
+    if (mapper.isFullAt(frame.T_odom_base)) break;
+    mapper.add(frame, rng);
+  }
+  return MappedAhead{mapper.hypotheses(), T_map_odom() * T_odom_submap};
+}
+
 }  // namespace semantic_mht_slam

@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/slam/slam.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -40,6 +41,31 @@ TEST(SlamTest, LatestFrameFollowsTheDetections) {
   ASSERT_TRUE(slam.parts().latest_frame);
   EXPECT_EQ(slam.parts().latest_frame->stamp, odometryAt(1).stamp);
   EXPECT_EQ(slam.parts().latest_frame->detections.size(), 1U);
+}
+
+TEST(SlamTest, FramesThatWaitShowTheirLandmarks) {
+  const SquareDrive drive(1);
+  Slam slam(SlamConfig{}, makeStreetClasses());
+  const auto feedThreeOfEach = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      Detections detections = drive.detectionsAt(i);
+      detections.resize(std::min<std::size_t>(detections.size(), 3));
+      slam.addOdometry({SquareDrive::stampAt(i), SquareDrive::odometryAt(i)});
+      slam.addDetections(SquareDrive::stampAt(i), detections);
+    }
+  };
+  feedThreeOfEach(0, 6);
+  ASSERT_FALSE(slam.parts().is_fitted);
+  const std::vector<MixtureLandmark> ahead = provisionalLandmarksOf(slam);
+  ASSERT_GE(ahead.size(), 2U);
+  feedThreeOfEach(6, 12);
+  ASSERT_TRUE(slam.parts().is_fitted);
+  const std::vector<MixtureLandmark> mapped = provisionalLandmarksOf(slam);
+  for (const MixtureLandmark& landmark : ahead) {
+    const MixtureLandmark* same = findLandmark(landmark.id, mapped);
+    ASSERT_NE(same, nullptr) << landmark.id;
+    EXPECT_LT((same->position.mean_m - landmark.position.mean_m).norm(), 0.5);
+  }
 }
 
 TEST(SlamTest, WhatTheOpenSubmapSawIsKnownBeforeItIsFinished) {

@@ -65,6 +65,12 @@ struct RequestedClosure {
   FixedAxesCov cov = FixedAxesCov::Zero();  ///< of it; zero: half a metre and 3 degrees
 };
 
+/// What an open submap knows: its hypotheses, most likely first, and T_map_submap.
+struct MappedAhead {
+  std::vector<MapHypothesis> hypotheses;
+  Pose T_map_submap;
+};
+
 /// What the estimator is made of, all of which outlives a program in a map file.
 struct SlamParts {
   FrameAssembler assembler;
@@ -172,6 +178,10 @@ class Slam {
   /// Correction of the odometry: T_map_base = T_map_odom * T_odom_base.
   Pose T_map_odom() const;
 
+  /// The submap that the frames make up which wait for the lengths of the detector, with these lengths as far as they
+  /// are known; none if no frame waits.
+  std::optional<MappedAhead> mapAhead() const;
+
   const SlamParts& parts() const { return parts_; }
   const Map& map() const { return parts_.map; }
   const Mode& mode() const { return parts_.mode; }
@@ -220,7 +230,8 @@ std::vector<MixtureLandmark> landmarksOf(const Slam& slam);
 std::vector<MixtureLandmark> landmarksOf(const Slam& slam, const MapUncertainty& uncertainty);
 
 /// What the open submap has seen and the map lacks, by rising id, map frame: fused over the hypotheses as if it ended
-/// now. Ids stay, places and existence may change until the submap is finished.
+/// now; before the first submap, what the frames show that wait (see `Slam::mapAhead`). Ids stay, places and existence
+/// may change until the submap is finished.
 std::vector<MixtureLandmark> provisionalLandmarksOf(const Slam& slam);
 
 /// The hypotheses of the current submap, most likely first; empty for the method `odometry`.
