@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/ros_time.h"
 #include "semantic_mht_slam/common/state_checks.h"
 
 namespace semantic_mht_slam {
@@ -13,7 +14,6 @@ constexpr int kMaxVarintBytes = 10;
 constexpr double kLargest = 1e100;    // its square is a number, too
 constexpr double kFurthest_m = 1e11;  // poses; odometry is used up to 1e10 m
 constexpr std::uint64_t kLastName = std::uint64_t{1} << 62U;
-constexpr std::int64_t kLastStamp = 4294967295LL * 1000000000LL;
 
 }  // namespace
 
@@ -106,7 +106,7 @@ void StateArchive::requireName(std::uint64_t landmark) const {
 }
 
 void StateArchive::requireStamp(std::int64_t stamp) const {
-  require(stamp >= 0 && stamp <= kLastStamp, "a stamp before or after the time of ROS");
+  require(isRosTime(stamp), "a stamp before or after the time of ROS");
 }
 
 std::uint64_t StateArchive::varint(std::uint64_t value) {

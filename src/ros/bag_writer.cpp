@@ -4,14 +4,13 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/ros_time.h"
 #include "semantic_mht_slam/ros/atomic_bag.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {
-
-constexpr Stamp kLastRosStamp = 4294967295LL * 1000000000LL;
 
 /// Tells players to latch the topic.
 boost::shared_ptr<ros::M_string> latchedHeader() {
@@ -60,7 +59,7 @@ void writeHead(rosbag::Bag& bag, const Recording& recording, const NodeConfig& f
 void writeBag(const std::string& path, const Recording& recording, const ClassTable& classes, const NodeConfig& frames,
               const BagLayout& layout, Stamp time_origin) {
   if (recording.odometry.empty()) throw InputError("cannot write '" + path + "': no odometry");
-  if (recording.odometry.back().stamp > kLastRosStamp - time_origin) {
+  if (recording.odometry.back().stamp > kLastStamp - time_origin) {
     throw InputError("cannot write '" + path + "': stamps go beyond the end of ROS time, 2106");
   }
   writeBagAtomically(path, [&](rosbag::Bag& bag) {

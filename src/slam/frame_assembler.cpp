@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "semantic_mht_slam/common/ros_time.h"
 #include "semantic_mht_slam/models/usable_detection.h"
 
 namespace semantic_mht_slam {
@@ -10,11 +11,12 @@ namespace {
 constexpr double kFurthest_m = 1e10;     // where a double still tells micrometres
 constexpr Stamp kDisorder = 1000000000;  // frames of one detector do not come in disorder by more
 
-bool isUsable(const Pose& T_odom_base) {
-  return T_odom_base.isValid() && (T_odom_base.translation_m.cwiseAbs().array() <= kFurthest_m).all();
-}
-
 }  // namespace
+
+bool isUsable(const StampedPose& T_odom_base) {
+  const Pose& pose = T_odom_base.T_world_base;
+  return isRosTime(T_odom_base.stamp) && pose.isValid() && (pose.translation_m.cwiseAbs().array() <= kFurthest_m).all();
+}
 
 void describe(FrameAssemblerConfig& config, Fields& fields) {
   fields.add("max_odometry_gap", config.max_odometry_gap_s, "s", {1e-3, 60.0},
@@ -40,7 +42,7 @@ InputCounters operator-(InputCounters counters, const InputCounters& before) {
 FrameAssembler::FrameAssembler(const FrameAssemblerConfig& config) : config_(config) {}
 
 bool FrameAssembler::addOdometry(const StampedPose& T_odom_base) {
-  if (!isUsable(T_odom_base.T_world_base)) {
+  if (!isUsable(T_odom_base)) {
     ++counters_.odometry_invalid;
     return false;
   }
@@ -69,6 +71,10 @@ void FrameAssembler::forgetOldOdometry() {
 
 void FrameAssembler::addDetections(Stamp stamp, Detections detections) {
   const std::size_t index = next_index_++;
+  if (!isRosTime(stamp)) {
+    ++(stamp < 0 ? counters_.frames_not_rising : counters_.frames_far_ahead);
+    return;
+  }
   dropOutlierBefore(stamp);
   if (newest() && stamp <= *newest()) {
     ++counters_.frames_not_rising;

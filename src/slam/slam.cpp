@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/common/stopwatch.h"
+#include "semantic_mht_slam/map/landmark_precision.h"
 #include "semantic_mht_slam/mapping/landmark_sizes.h"
 #include "semantic_mht_slam/slam/seen_again.h"
 #include "semantic_mht_slam/slam/slam_parts_state.h"
@@ -75,7 +76,7 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
 
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
   const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
-  const bool is_later = last && T_odom_base.stamp > last->stamp && T_odom_base.T_world_base.isValid();
+  const bool is_later = last && T_odom_base.stamp > last->stamp && isUsable(T_odom_base);
   if (is_later && !parts_.continuity.goesOn(T_odom_base)) beginSession();
   if (!parts_.assembler.addOdometry(T_odom_base)) return false;
   parts_.continuity.add(T_odom_base);
@@ -153,6 +154,7 @@ void Slam::endSubmap() {
   FinishedSubmap finished = parts_.mapper->finish(explained_);
   if (explained_.most > 0) unsure_.push_back(std::move(finished.unsure));
   noteSizes(finished.frames, finished.submap);
+  for (MixtureLandmark& landmark : finished.submap.landmarks) landmark = withSevenDigits(std::move(landmark));
   parts_.mapping_s += watch.elapsed_s();
   Map& map = parts_.map;
   const OdometryModel& odometry = parts_.odometry = parts_.mapper->odometryModel();

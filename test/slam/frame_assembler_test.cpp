@@ -1,11 +1,13 @@
 #include "semantic_mht_slam/slam/frame_assembler.h"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/common/random.h"
+#include "semantic_mht_slam/common/ros_time.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -89,6 +91,22 @@ TEST(FrameAssemblerTest, BadOdometryIsDroppedAndCounted) {
   EXPECT_EQ(assembler.counters().odometry, 2U);
   EXPECT_EQ(assembler.counters().odometry_not_rising, 2U);
   EXPECT_EQ(assembler.counters().odometry_invalid, 2U);
+}
+
+TEST(FrameAssemblerTest, WhatRosCannotStampIsDroppedAndCounted) {
+  FrameAssembler assembler({});
+  for (const Stamp stamp : {Stamp{-1}, kLastStamp + 1, std::numeric_limits<Stamp>::max()}) {
+    StampedPose odometry = odometryAt(1.0);
+    odometry.stamp = stamp;
+    EXPECT_FALSE(assembler.addOdometry(odometry)) << stamp;
+    assembler.addDetections(stamp, {detectionAt(5.0)});
+  }
+  EXPECT_EQ(assembler.counters().odometry_invalid, 3U);
+  EXPECT_EQ(assembler.counters().frames_not_rising, 1U);
+  EXPECT_EQ(assembler.counters().frames_far_ahead, 2U);
+  assembler.addDetections(stampFromSeconds(1.0), {detectionAt(5.0)});
+  assembler.addOdometry(odometryAt(1.0));
+  EXPECT_EQ(takeAll(assembler).size(), 1U);
 }
 
 TEST(FrameAssemblerTest, BadDetectionsAreDroppedOneByOneAndTheRestStays) {

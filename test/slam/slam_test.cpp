@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
+
+#include "semantic_mht_slam/common/ros_time.h"
 
 #include "support/square_drive.h"
 
@@ -41,6 +44,22 @@ TEST(SlamTest, LatestFrameFollowsTheDetections) {
   ASSERT_TRUE(slam.parts().latest_frame);
   EXPECT_EQ(slam.parts().latest_frame->stamp, odometryAt(1).stamp);
   EXPECT_EQ(slam.parts().latest_frame->detections.size(), 1U);
+}
+
+TEST(SlamTest, NothingThatComesInMakesAStateThatCannotBeRead) {
+  const ClassTable classes = makeStreetClasses();
+  Slam slam(SlamConfig{}, classes);
+  SquareDrive(1).feed(slam, 0, 40);
+  Detection detection;
+  detection.position_m = {1.0, 2.0, 0.0};
+  for (const Stamp stamp : {Stamp{-1}, kLastStamp + 1, std::numeric_limits<Stamp>::max()}) {
+    EXPECT_FALSE(slam.addOdometry({stamp, SquareDrive::odometryAt(40)})) << stamp;
+    slam.addDetections(stamp, {detection});
+    EXPECT_NO_THROW(Slam(SlamConfig{}, classes, slam.snapshot())) << stamp;
+  }
+  EXPECT_FALSE(slam.addOdometry({SquareDrive::stampAt(39) + 1, {Eigen::Quaterniond::Identity(), {1e11, 0.0, 0.0}}}));
+  EXPECT_TRUE(slam.addOdometry({SquareDrive::stampAt(40), SquareDrive::odometryAt(40)})) << "the session goes on";
+  EXPECT_TRUE(latestCovOf(slam)) << "and is not lost";
 }
 
 TEST(SlamTest, FramesThatWaitShowTheirLandmarks) {

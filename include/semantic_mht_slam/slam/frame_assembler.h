@@ -21,10 +21,13 @@ struct FrameAssemblerConfig {
 
 void describe(FrameAssemblerConfig& config, Fields& fields);
 
+/// Whether it is a pose, no farther than 1e10 m away, at a time that ROS can write.
+bool isUsable(const StampedPose& T_odom_base);
+
 /// What came in and what was dropped, since the beginning.
 struct InputCounters {
   std::size_t odometry = 0;                 ///< odometry samples used
-  std::size_t odometry_invalid = 0;         ///< dropped: not finite, beyond 1e10 m, or the quaternion has no unit norm
+  std::size_t odometry_invalid = 0;         ///< dropped: not usable (see `isUsable`)
   std::size_t odometry_not_rising = 0;      ///< dropped: stamp not after the one before
   std::size_t frames = 0;                   ///< detector frames used
   std::size_t frames_before_odometry = 0;   ///< dropped: older than the odometry that is still known
