@@ -39,6 +39,7 @@ void noteTrajectory(const Slam& slam, const MapUncertainty& uncertainty, const s
   const bool stood_on = i > 0 && result.whole_trajectory[i - 1].stamp != known.back().stamp;
   if (stood_on) --i;
   for (const StampedPose& sample : result.online_trajectory) {
+    while (result.whole_trajectory[i].stamp < sample.stamp) ++i;  // a sample that was used later than it came
     result.trajectory.push_back({sample.stamp, result.whole_trajectory[i].T_world_base});
     result.trajectory_cov.push_back(cov[i]);
     if (sample.stamp == result.whole_trajectory[i].stamp) ++i;
@@ -101,6 +102,8 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
     result.moving = slam.parts().mapper->movingCounts();
   }
   result.counters = slam.parts().assembler.counters() - counted;
+  result.counters.frames_waiting_too_long += slam.parts().assembler.waiting();  // nothing comes any more
+  result.counters.odometry_outliers += slam.parts().unconfirmed ? 1 : 0;
   result.landmarks = landmarksOf(slam, uncertainty);
   result.loop_closures = loopClosures(slam.map());
   if (slam.parts().closer) result.submap_checks = submapResults(slam.map(), *slam.parts().closer);

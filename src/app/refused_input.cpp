@@ -21,10 +21,12 @@ std::vector<std::string> droppedInput(const InputCounters& counters, const Refus
   odometry(refused.odometry_before_jump, "the clock falls back after them, and a new map begins");
   odometry(counters.odometry_invalid, "not finite, beyond 1e10 m, or a quaternion without unit norm");
   odometry(counters.odometry_not_rising, "the stamp does not rise");
+  odometry(counters.odometry_outliers, "no motion leads there, and the next message goes on without it");
   objects(refused.objects_before_jump, "the clock falls back after them, and a new map begins");
   objects(refused.objects_bad_stamps, "the stamp is zero, or beyond the end of ROS's time");
   objects(refused.objects_without_transform,
           "no transform from '" + refused.unconnected_frame + "' to '" + names.base_frame + "' at their stamp");
+  objects(refused.objects_given_up, "they waited for odometry or tf, until too many did or another map began");
   objects(refused.objects_in_map_frame,
           "given in the frame of the map, which is what is sought; the sensor's is needed");
   for (const auto& [id, count] : refused.unknown_classes) {
@@ -37,7 +39,7 @@ std::vector<std::string> droppedInput(const InputCounters& counters, const Refus
   objects(counters.frames_not_rising, "the stamp does not rise");
   objects(counters.frames_far_ahead, "the stamp is far ahead of the odometry");
   objects(counters.frames_in_odometry_gap, "in a gap of the odometry (input.max_odometry_gap)");
-  objects(counters.frames_waiting_too_long, "waited too long for odometry");
+  objects(counters.frames_waiting_too_long, "no odometry came for them in time, or before another session began");
   return lines;
 }
 

@@ -171,6 +171,7 @@ Json toJson(const InputCounters& counters) {
   return {{"odometry", counters.odometry},
           {"odometry_invalid", counters.odometry_invalid},
           {"odometry_not_rising", counters.odometry_not_rising},
+          {"odometry_outliers", counters.odometry_outliers},
           {"frames", counters.frames},
           {"frames_before_odometry", counters.frames_before_odometry},
           {"frames_not_rising", counters.frames_not_rising},

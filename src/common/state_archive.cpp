@@ -57,6 +57,7 @@ std::uint8_t StateArchive::byte(std::uint8_t value) {
   return result;
 }
 
+/// What could not be read again is not written either.
 void StateArchive::number(double& value) {
   if (is_reading_) {
     const std::uint64_t bits = nextNumber();
@@ -64,6 +65,7 @@ void StateArchive::number(double& value) {
     if (!(std::abs(value) <= kLargest)) fail("a number is not finite, or too large");
     return;
   }
+  if (!(std::abs(value) <= kLargest)) throw InputError("a number of the map is not finite, or too large");
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
   const auto [last, is_new] = last_at_.try_emplace(bits, written_numbers_);

@@ -50,8 +50,10 @@ class SceneOfSubmap {
       object.landmark = last += step;
       archive.requireName(object.landmark);
       if (!is_known) {
-        archive(object.position_m, object.cov_m2, object.class_index);
-        archive.require(isCovariance(object.cov_m2), "an object whose covariance is not positive");
+        Gaussian3 place{object.position_m, object.cov_m2};
+        archive(place, object.class_index);
+        object.position_m = place.mean_m;
+        object.cov_m2 = place.cov_m2;
       } else if (archive.isReading()) {
         const std::optional<SceneObject> found = find(object.landmark);
         if (!found) StateArchive::fail("a scene shows a landmark that its submap lacks");

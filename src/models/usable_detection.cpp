@@ -37,7 +37,9 @@ bool isUsableCov(const Eigen::Matrix3d& cov_m2) {
 bool isUsable(const Detection& detection) {
   if (!(detection.position_m.cwiseAbs().array() <= kFarthest_m).all()) return false;
   if (detection.score && !(*detection.score >= 0.0 && *detection.score <= 1.0)) return false;
-  if (detection.size_m && !(detection.size_m->allFinite() && (detection.size_m->array() >= 0.0).all())) return false;
+  if (detection.size_m && !(detection.size_m->array() >= 0.0 && detection.size_m->array() <= kFarthest_m).all()) {
+    return false;
+  }
   return !detection.cov_m2 || isUsableCov(*detection.cov_m2);
 }
 

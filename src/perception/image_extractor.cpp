@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "semantic_mht_slam/common/saturated.h"
 #include "semantic_mht_slam/perception/cloud_extractor.h"
 #include "semantic_mht_slam/perception/image_blobs.h"
 
@@ -49,8 +50,8 @@ std::vector<SeenPoints> assignToBlobs(const LabelledCloud& cloud, const LabelIma
     if (!pixel ||
         !(pixel->minCoeff() > -0.5 && pixel->x() < image.width_px - 0.5 && pixel->y() < image.height_px - 0.5))
       continue;
-    const int column = std::clamp(static_cast<int>(std::lround(pixel->x())), 0, image.width_px - 1);
-    const int row = std::clamp(static_cast<int>(std::lround(pixel->y())), 0, image.height_px - 1);
+    const int column = std::clamp(saturatedInt(std::round(pixel->x())), 0, image.width_px - 1);
+    const int row = std::clamp(saturatedInt(std::round(pixel->y())), 0, image.height_px - 1);
     const auto place =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(column);
     const int blob = blobs.blob_of_pixel[place];

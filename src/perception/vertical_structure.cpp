@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "semantic_mht_slam/common/saturated.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -48,8 +50,8 @@ Columns uprightColumns(const std::vector<Eigen::Vector3f>& points_m, const Clust
   Columns columns;
   for (const int i : cluster) {
     const Eigen::Vector3f& point = points_m[static_cast<std::size_t>(i)];
-    Column& column = columns[{static_cast<int>(std::floor(point.x() / kColumn_m)),
-                              static_cast<int>(std::floor(point.y() / kColumn_m))}];
+    Column& column =
+        columns[{saturatedInt(std::floor(point.x() / kColumn_m)), saturatedInt(std::floor(point.y() / kColumn_m))}];
     const int layer = std::min(static_cast<int>((point.z() - heights.low_m) * layers_per_m), kLayers - 1);
     column.layers.set(static_cast<std::size_t>(layer));
     column.sum_m += point.head<2>();

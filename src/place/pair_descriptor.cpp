@@ -6,6 +6,8 @@
 #include <tuple>
 #include <vector>
 
+#include "semantic_mht_slam/common/saturated.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -15,8 +17,8 @@ constexpr double kReachSigmas = 2.0;
 void spread(double distance_m, double stddev_m, double weight, double bin_m, Eigen::Ref<Eigen::VectorXd> bins) {
   const double reach_m = std::max(bin_m, kReachSigmas * stddev_m);
   const int bin_count = static_cast<int>(bins.size());
-  const int first = std::max(0, static_cast<int>(std::ceil((distance_m - reach_m) / bin_m - 0.5)));
-  const int last = std::min(bin_count - 1, static_cast<int>(std::floor((distance_m + reach_m) / bin_m - 0.5)));
+  const int first = std::max(0, saturatedInt(std::ceil((distance_m - reach_m) / bin_m - 0.5)));
+  const int last = std::min(bin_count - 1, saturatedInt(std::floor((distance_m + reach_m) / bin_m - 0.5)));
   double total = 0.0;
   const auto height = [&](int bin) {
     return std::max(0.0, 1.0 - std::abs((bin + 0.5) * bin_m - distance_m) / reach_m);
@@ -68,7 +70,7 @@ void describe(PairDescriptorConfig& config, Fields& fields) {
 PairDescriptor describePairs(const Scene& scene, const ClassTable& classes, double noise_floor_m,
                              const PairDescriptorConfig& config) {
   const std::vector<PlanarObject> objects = planarObjects(scene, classes, noise_floor_m);
-  const int bins = static_cast<int>(std::ceil(config.max_distance_m / config.bin_m));
+  const int bins = saturatedInt(std::ceil(config.max_distance_m / config.bin_m));
   const int count = classes.size();
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count) * (count + 1) / 2 * bins);
   for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "semantic_mht_slam/common/saturated.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -35,7 +37,7 @@ class VoteGrid::HighestPeaks {
       peaks_.pop_back();
     }
     if (peaks_.size() == count_) {
-      least_votes_ = std::max(0, static_cast<std::int32_t>(std::floor(peaks_.front().score * kVotesPerNat)));
+      least_votes_ = std::max(0, saturatedInt(std::floor(peaks_.front().score * kVotesPerNat)));
     }
   }
 
@@ -61,8 +63,8 @@ class VoteGrid::HighestPeaks {
 VoteGrid::VoteGrid(const RegistrationProblem& problem)
     : prior_(problem.prior),
       cell_m_(problem.cell_m),
-      half_side_(static_cast<int>(std::ceil(prior_.window(0) / cell_m_))),
-      half_turns_(static_cast<int>(std::ceil(prior_.window(3) / problem.yaw_step_rad))),
+      half_side_(saturatedInt(std::ceil(prior_.window(0) / cell_m_))),
+      half_turns_(saturatedInt(std::ceil(prior_.window(3) / problem.yaw_step_rad))),
       yaw_step_rad_(prior_.is_open ? M_PI / half_turns_ : problem.yaw_step_rad),
       layers_(2 * half_turns_ + (prior_.is_open ? 0 : 1)),
       side_(2 * (half_side_ + kMargin) + 1),
@@ -95,12 +97,12 @@ void VoteGrid::addBest(int voter, const Eigen::Vector2d& at_m, double peak, doub
   const Eigen::Vector2d center = at_m / cell_m_ + Eigen::Vector2d::Constant(half_side_ + kMargin);
   const double radius = std::min(kMaxRadiusCells, radius_m / cell_m_);
   const double scale = half_information * cell_m_ * cell_m_ * kVotesPerNat;
-  const int y_end = std::min(side_ - 1, static_cast<int>(std::floor(center.y() + radius)));
-  const int x_begin = std::max(0, static_cast<int>(std::ceil(center.x() - radius)));
-  const int x_end = std::min(side_ - 1, static_cast<int>(std::floor(center.x() + radius)));
+  const int y_end = std::min(side_ - 1, saturatedInt(std::floor(center.y() + radius)));
+  const int x_begin = std::max(0, saturatedInt(std::ceil(center.x() - radius)));
+  const int x_end = std::min(side_ - 1, saturatedInt(std::floor(center.x() + radius)));
   if (x_begin > x_end) return;
   std::vector<std::int32_t>& total = scores(cast_layer_);
-  for (int y = std::max(0, static_cast<int>(std::ceil(center.y() - radius))); y <= y_end; ++y) {
+  for (int y = std::max(0, saturatedInt(std::ceil(center.y() - radius))); y <= y_end; ++y) {
     const double dy = y - center.y();
     const double at_row = peak * kVotesPerNat - scale * dy * dy;
     const std::size_t first = cellOf(y, x_begin);
@@ -126,8 +128,8 @@ void VoteGrid::addRow(float at_row, float scale, float first_dx, int count, std:
 
 void VoteGrid::addShared(const Eigen::Vector2d& at_m, double weight) {
   const Eigen::Vector2d place = at_m / cell_m_ + Eigen::Vector2d::Constant(half_side_ + kMargin);
-  const int x = static_cast<int>(std::floor(place.x()));
-  const int y = static_cast<int>(std::floor(place.y()));
+  const int x = saturatedInt(std::floor(place.x()));
+  const int y = saturatedInt(std::floor(place.y()));
   if (x < 0 || y < 0 || x + 1 >= side_ || y + 1 >= side_) return;
   const double dx = place.x() - x;
   const double dy = place.y() - y;

@@ -41,7 +41,7 @@ class BagReader {
         layout_(layout),
         odometry_gate_(frames),
         sensors_(transforms_, frames),
-        objects_gate_(frames, classes, sensors_) {}
+        objects_gate_(frames, classes, sensors_, std::numeric_limits<std::size_t>::max()) {}
 
   Recording read() {
     const QuietTf quiet;
@@ -95,6 +95,7 @@ class BagReader {
       }
     }
     now_s_ = std::numeric_limits<double>::infinity();  // nothing more comes: what waits is decided now
+    odometry_gate_.giveUpHeld(recording_.refused);
     takeObjects();
   }
 

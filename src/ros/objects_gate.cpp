@@ -15,6 +15,14 @@ void ObjectsGate::hold(const SemanticObjectArray& message, const OdometryGate& o
   const Stamp stamp = toStamp(message.header.stamp);
   waiting_.push_back({message, odometry.isBack(stamp, newest_), now_s + timeout_s_});
   newest_ = stamp;
+  if (waiting_.size() <= most_) return;
+  waiting_.pop_front();
+  ++refused.objects_given_up;
+}
+
+void ObjectsGate::clear(RefusedInput& refused) {
+  refused.objects_given_up += waiting_.size();
+  waiting_.clear();
 }
 
 std::optional<DetectorFrame> ObjectsGate::next(const OdometryGate& odometry, const std::optional<Stamp>& latest,

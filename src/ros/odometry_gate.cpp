@@ -37,9 +37,19 @@ std::vector<nav_msgs::Odometry> OdometryGate::pass(const nav_msgs::Odometry& mes
     return {};
   }
   const bool was_holding = jump_.isHolding();
-  if (const auto jumped = jump_.takeConfirmed(stamp, latest)) return {*jumped, message};
+  if (const auto jumped = jump_.takeConfirmed(stamp, latest)) {
+    jump_.noteStep(stamp, toStamp(jumped->header.stamp));
+    return {*jumped, message};
+  }
+  jump_.noteStep(stamp, latest);
   refused.odometry_stamp_outliers += was_holding ? 1 : 0;
   return {message};
+}
+
+void OdometryGate::giveUpHeld(RefusedInput& refused) {
+  if (!jump_.isHolding()) return;
+  jump_.takeConfirmed(0, std::nullopt);
+  ++refused.odometry_stamp_outliers;
 }
 
 }  // namespace semantic_mht_slam

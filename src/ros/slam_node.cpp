@@ -30,7 +30,7 @@ SlamNode::SlamNode(const ros::NodeHandle& handle, const ros::NodeHandle& private
       publisher_(handle, config.node, classes),
       gate_(config.node),
       sensors_(transforms_, config.node),
-      objects_gate_(config.node, classes_, sensors_),
+      objects_gate_(config.node, classes_, sensors_, static_cast<std::size_t>(config.slam.input.max_waiting_frames)),
       is_localization_wanted_(config.node.mode == StartMode::kLocalization),
       is_loaded_(!config.node.map.empty()),
       queue_(static_cast<std::size_t>(config.node.queue_size), inWallTime(config.node.max_delay_s)) {

@@ -97,7 +97,7 @@ bool SlamNode::reset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   return answer("reset", response, [&] {
     const auto lock = lockCaughtUp();
     const std::size_t landmarks = publisher_.landmarks();
-    objects_gate_.clear();
+    objects_gate_.clear(estimator_.refused);
     startAgain();
     noteStatus();
     response.success = true;
@@ -182,7 +182,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
       return;
     }
     is_loaded_ = true;
-    objects_gate_.clear();
+    objects_gate_.clear(estimator_.refused);
     published_odometry_ = 0;
     input_failures_.forgetRow();
     noteStatus();

@@ -30,8 +30,8 @@ void describe(FrameAssemblerConfig& config, Fields& fields) {
 InputCounters operator-(InputCounters counters, const InputCounters& before) {
   for (const auto member :
        {&InputCounters::odometry, &InputCounters::odometry_invalid, &InputCounters::odometry_not_rising,
-        &InputCounters::frames, &InputCounters::frames_before_odometry, &InputCounters::frames_not_rising,
-        &InputCounters::frames_far_ahead, &InputCounters::frames_in_odometry_gap,
+        &InputCounters::odometry_outliers, &InputCounters::frames, &InputCounters::frames_before_odometry,
+        &InputCounters::frames_not_rising, &InputCounters::frames_far_ahead, &InputCounters::frames_in_odometry_gap,
         &InputCounters::frames_waiting_too_long, &InputCounters::detections, &InputCounters::detections_invalid,
         &InputCounters::detections_at_origin, &InputCounters::covariances_unknown, &InputCounters::frames_standing}) {
     counters.*member -= before.*member;
@@ -56,9 +56,12 @@ bool FrameAssembler::addOdometry(const StampedPose& T_odom_base) {
   return true;
 }
 
-void FrameAssembler::beginSession() {
+void FrameAssembler::beginSession(Stamp begin) {
   odometry_.clear();
-  waiting_.clear();
+  const auto is_before = [&](const WaitingFrame& frame) { return frame.stamp < begin; };
+  const auto first = std::stable_partition(waiting_.begin(), waiting_.end(), is_before);
+  counters_.frames_waiting_too_long += static_cast<std::size_t>(first - waiting_.begin());
+  waiting_.erase(waiting_.begin(), first);
   last_taken_.reset();
 }
 

@@ -60,4 +60,10 @@ void OdometryContinuity::transfer(StateArchive& archive) {
   archive.require(steps_ >= 0 && speed_m_per_s_ >= 0.0 && turn_rate_rad_per_s_ >= 0.0, "a negative speed");
 }
 
+bool mayFollow(const StampedPose& sample, const StampedPose& next) {
+  OdometryContinuity continuity;
+  continuity.add(sample);
+  return continuity.goesOn(next);
+}
+
 }  // namespace semantic_mht_slam

@@ -75,9 +75,29 @@ Slam::Slam(const SlamConfig& config, const ClassTable& classes)
     : config_(config), classes_(classes), fitted_(config), parts_(makeParts(config, classes)) {}
 
 bool Slam::addOdometry(const StampedPose& T_odom_base) {
+  return isReached(T_odom_base) && take(T_odom_base);
+}
+
+/// Whether a sample follows those before it, or the one that waits, with which it then begins a session.
+bool Slam::isReached(const StampedPose& T_odom_base) {
   const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
-  const bool is_later = last && T_odom_base.stamp > last->stamp && isUsable(T_odom_base);
-  if (is_later && !parts_.continuity.goesOn(T_odom_base)) beginSession();
+  if (!last || T_odom_base.stamp <= last->stamp || !isUsable(T_odom_base)) return true;
+  const bool goes_on = parts_.continuity.goesOn(T_odom_base);
+  const std::optional<StampedPose> before = std::exchange(parts_.unconfirmed, std::nullopt);
+  const bool is_confirmed = !goes_on && before && mayFollow(*before, T_odom_base);
+  if (is_confirmed) {
+    beginSession(before->stamp);
+    take(*before);
+    return true;
+  }
+  if (before) parts_.assembler.countOutlier();
+  if (!goes_on) parts_.unconfirmed = T_odom_base;
+  return goes_on;
+}
+
+/// A sample that comes to be used, or is counted as dropped.
+bool Slam::take(const StampedPose& T_odom_base) {
+  const std::optional<StampedPose> last = parts_.sessions.latestOdometry();
   if (!parts_.assembler.addOdometry(T_odom_base)) return false;
   parts_.continuity.add(T_odom_base);
   reckon(T_odom_base, parts_);
@@ -219,12 +239,13 @@ void Slam::resumeMapping() {
   localizer->isLocated() ? enter(Mapping{}) : enter(Localizing{*localizer, true});
 }
 
-void Slam::beginSession() {
+void Slam::beginSession(Stamp begin) {
   endSubmap();
   const auto* localizing = std::get_if<Localizing>(&parts_.mode);
   const bool is_mapping_wanted = localizing == nullptr || localizing->until_found;
-  parts_.assembler.beginSession();
+  parts_.assembler.beginSession(begin);
   parts_.continuity.clear();
+  parts_.unconfirmed.reset();
   parts_.latest_frame.reset();
   parts_.latest.reset();
   parts_.sessions.begin(parts_.map.keyframes().nextId());

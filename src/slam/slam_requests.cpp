@@ -21,6 +21,8 @@ namespace {
 constexpr double kStddev_m = 0.5;  // of a closure whose covariance nobody gave
 constexpr double kStddev_rad = 3.0 * M_PI / 180.0;
 constexpr double kNearStamp_s = 1.0;  // of the poses that a request means
+constexpr double kFarthest_m = 1e7;   // a quarter round the Earth
+constexpr double kMostInformation = 1e12;
 
 [[noreturn]] void failNoLandmark(LandmarkId name) {
   throw InputError("there is no landmark " + std::to_string(name) + " in the map");
@@ -73,12 +75,18 @@ PoseCov covOf(const RequestedClosure& closure) {
 }
 
 void requireUsable(const RequestedClosure& closure) {
-  if (!closure.T_match_query.isValid()) {
-    throw InputError("the transform of a closure is not finite, or its quaternion has no unit norm");
+  if (!closure.T_match_query.isValid() || closure.T_match_query.translation_m.cwiseAbs().maxCoeff() > kFarthest_m) {
+    throw InputError("the transform of a closure is not finite, beyond 1e7 m, or its quaternion has no unit norm");
   }
   const Eigen::LLT<FixedAxesCov> llt(closure.cov);
   if (!closure.cov.allFinite() || (!closure.cov.isZero(0.0) && llt.info() != Eigen::Success)) {
     throw InputError("the covariance of a closure is not positive definite; all zero means not known");
+  }
+  if (closure.cov.isZero(0.0)) return;
+  const FixedAxesCov information = closure.cov.inverse();
+  if (!(information.array().abs() <= kMostInformation).all() ||
+      closure.cov.diagonal().maxCoeff() > kFarthest_m * kFarthest_m) {
+    throw InputError("the standard deviations of a closure are below 1e-6 or beyond 1e7 m or rad");
   }
 }
 

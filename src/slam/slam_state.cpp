@@ -14,10 +14,11 @@
 namespace semantic_mht_slam {
 
 void transfer(StateArchive& archive, InputCounters& counters) {
-  auto& [odometry, odometry_invalid, odometry_not_rising, frames, frames_before_odometry, frames_not_rising,
-         frames_far_ahead, frames_in_odometry_gap, frames_waiting_too_long, detections, detections_invalid,
-         detections_at_origin, covariances_unknown, frames_standing] = counters;
-  archive(odometry, odometry_invalid, odometry_not_rising, frames, frames_before_odometry, frames_not_rising);
+  auto& [odometry, odometry_invalid, odometry_not_rising, odometry_outliers, frames, frames_before_odometry,
+         frames_not_rising, frames_far_ahead, frames_in_odometry_gap, frames_waiting_too_long, detections,
+         detections_invalid, detections_at_origin, covariances_unknown, frames_standing] = counters;
+  archive(odometry, odometry_invalid, odometry_not_rising, odometry_outliers, frames, frames_before_odometry);
+  archive(frames_not_rising);
   archive(frames_far_ahead, frames_in_odometry_gap, frames_waiting_too_long, detections, detections_invalid);
   archive(detections_at_origin, covariances_unknown, frames_standing);
 }
@@ -72,7 +73,7 @@ void transferMode(StateArchive& archive, const SlamConfig& config, SlamParts& pa
 
 void transferDetector(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
   archive(parts.range_factor, parts.is_fitted, parts.detector_range, parts.waiting);
-  archive(parts.continuity, parts.standing);
+  archive(parts.continuity, parts.unconfirmed, parts.standing);
   if (!(parts.range_factor > 1e-3 && parts.range_factor < 1e3)) StateArchive::fail("a detector of no range");
   archive.require(areRising(parts.waiting, [](const Frame& frame) { return frame.stamp; }),
                   "frames whose stamps do not rise");
@@ -125,7 +126,7 @@ struct Section {
   void (*transfer)(StateArchive& archive, const SlamConfig& config, SlamParts& parts);
 };
 
-constexpr Section kSections[] = {{"detector", 2, transferDetector}, {"input", 5, transferInput},
+constexpr Section kSections[] = {{"detector", 3, transferDetector}, {"input", 6, transferInput},
                                  {"submaps", 4, transferSubmaps},   {"keyframes", 5, transferKeyframes},
                                  {"graph", 5, transferGraph},       {"hypotheses", 9, transferMapper}};
 

@@ -87,6 +87,13 @@ TEST(StateArchiveTest, NumbersThatThereAreNotAreRefused) {
   expectInputError([&] { read(two + std::string(1, '\0')); }, {"numbers too many"});
 }
 
+TEST(StateArchiveTest, WhatCouldNotBeReadIsNotWritten) {
+  for (double value : {std::nan(""), std::numeric_limits<double>::infinity(), -1e101}) {
+    StateArchive writer;
+    expectInputError([&] { writer(value); }, {"not finite, or too large"});
+  }
+}
+
 TEST(StateArchiveTest, ContainersOfContainersComeBack) {
   const std::map<int, std::vector<std::optional<std::string>>> value = {{-3, {"a", std::nullopt}}, {7, {}}};
   EXPECT_EQ(throughBytes(value), value);

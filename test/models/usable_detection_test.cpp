@@ -39,6 +39,16 @@ TEST(UsableDetectionTest, PositionsThatNoSensorSeesAreNotUsable) {
   EXPECT_TRUE(isUsable(detectionAt({-300.0, 40.0, 2.0})));
 }
 
+TEST(UsableDetectionTest, SizesThatNothingHasAreNotUsable) {
+  Detection detection = detectionAt({1.0, 2.0, 0.0});
+  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(), 1e6, -1.0, 1e308}) {
+    detection.size_m = Eigen::Vector3d(1.0, value, 1.0);
+    EXPECT_FALSE(isUsable(detection)) << value;
+  }
+  detection.size_m = Eigen::Vector3d(0.0, 30.0, 5.0);
+  EXPECT_TRUE(isUsable(detection));
+}
+
 TEST(UsableDetectionTest, SingularCovariancesAreNotUsableHoweverTheyAreRounded) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Rng rng(seed);

@@ -32,6 +32,17 @@ TEST(PairDescriptorTest, DoesNotChangeWithPoseOrDirectionOfTravelOrOrder) {
   }
 }
 
+TEST(PairDescriptorTest, ObjectsBeyondAnyDistanceCountForNothing) {
+  Rng rng(7);
+  const Scene scene = makeStreet(30, 0.05, rng);
+  Scene other = scene;
+  for (const double far_m : {1e11, -1e30, 1e100}) {
+    other.objects.push_back(scene.objects.front());
+    other.objects.back().position_m = {far_m, far_m, 0.0};
+  }
+  EXPECT_EQ(descriptorOf(other), descriptorOf(scene));
+}
+
 TEST(PairDescriptorTest, TheSamePlaceIsMoreAlikeThanAnyOther) {
   for (int seed = 0; seed < 20; ++seed) {
     Rng rng(50 + seed);

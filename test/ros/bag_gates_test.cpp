@@ -1,5 +1,6 @@
 // A bag goes through the gates of the node: what they let pass, and what they refuse with its cause.
 #include <functional>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -178,12 +179,13 @@ TEST_F(BagGatesTest, OneUnknownClassDropsItsObjectNotTheRun) {
 }
 
 TEST_F(BagGatesTest, OneStampInTheFutureCostsOneMessageOfEitherKind) {
-  for (const int outlier : {0, 1, 30}) {
-    change_odometry_ = [&](int i, nav_msgs::Odometry& message) {
-      if (i == 30) message.header.stamp += ros::Duration(3600.0);
+  const std::map<int, double> ahead_s = {{0, 3600.0}, {1, 5.0}, {30, 30.0}};  // frame -> of the odometry
+  for (const auto& [outlier, odometry_s] : ahead_s) {
+    change_odometry_ = [ahead = odometry_s](int i, nav_msgs::Odometry& message) {
+      if (i == 30) message.header.stamp += ros::Duration(ahead);
     };
-    change_objects_ = [&](int i, SemanticObjectArray& message) {
-      if (i == outlier) message.header.stamp += ros::Duration(outlier == 1 ? 5.0 : 3600.0);
+    change_objects_ = [frame = outlier](int i, SemanticObjectArray& message) {
+      if (i == frame) message.header.stamp += ros::Duration(frame == 1 ? 5.0 : 3600.0);
     };
     {
       rosbag::Bag bag(path_, rosbag::bagmode::Write);
@@ -195,6 +197,21 @@ TEST_F(BagGatesTest, OneStampInTheFutureCostsOneMessageOfEitherKind) {
     EXPECT_EQ(result.counters.frames, kFrames - 1U) << outlier;
     EXPECT_EQ(result.trajectory.back().stamp, odometryAt(kFrames - 1).stamp);
   }
+}
+
+TEST_F(BagGatesTest, WhatStillWaitsWhenTheBagEndsIsCounted) {
+  change_odometry_ = [](int i, nav_msgs::Odometry& message) {
+    if (i >= 50) message.header.frame_id = "elsewhere";  // as if the odometry had ended
+    if (i == 49) message.header.stamp += ros::Duration(3600.0);
+  };
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);
+    addDrive(bag);
+  }
+  EXPECT_EQ(read().refused.odometry_stamp_outliers, 1U);
+  const RunResult result = run();
+  EXPECT_EQ(result.counters.frames, 49U);
+  EXPECT_EQ(result.counters.frames_waiting_too_long, kFrames - 49U);
 }
 
 TEST_F(BagGatesTest, AClockThatFallsBackBeginsANewMapAndWhatWasBeforeIsCounted) {

@@ -56,7 +56,7 @@ TEST(OdometryGateTest, StampsThatOneCannotComputeWithAreRefused) {
 }
 
 TEST(OdometryGateTest, OneStampFarFromTheOthersIsLeftOutAndCounted) {
-  for (const double wrong_s : {3700.0, 2.0}) {
+  for (const double wrong_s : {3700.0, 159.0, 130.0, 105.0, 102.0, 2.0}) {
     RefusedInput refused;
     EXPECT_EQ(used({100.0, 100.1, wrong_s, 100.2, 100.3}, refused), stampsOf({100.0, 100.1, 100.2, 100.3}));
     EXPECT_EQ(refused.odometry_stamp_outliers, 1U) << wrong_s;
@@ -64,7 +64,7 @@ TEST(OdometryGateTest, OneStampFarFromTheOthersIsLeftOutAndCounted) {
 }
 
 TEST(OdometryGateTest, AJumpThatTheNextMessageConfirmsLosesNothing) {
-  for (const double jump_s : {3700.0, 2.0}) {
+  for (const double jump_s : {3700.0, 130.0, 102.0, 2.0}) {
     RefusedInput refused;
     EXPECT_EQ(used({100.0, 100.1, jump_s, jump_s + 0.1}, refused), stampsOf({100.0, 100.1, jump_s, jump_s + 0.1}));
     EXPECT_EQ(refused.odometry_stamp_outliers, 0U) << jump_s;

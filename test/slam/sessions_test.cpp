@@ -37,6 +37,19 @@ TEST_P(SessionsTest, OdometryThatIsSetToZeroIsAnotherSessionThatIsFoundInTheMap)
   EXPECT_LT((trajectory[680].T_world_base.translation_m - there.translation_m).head<2>().norm(), 1.0);
 }
 
+TEST_P(SessionsTest, OneSampleThatNoMotionLeadsToIsLeftOut) {
+  feed(0, 100, Pose::identity());
+  const Pose far{Eigen::Quaterniond::Identity(), {500.0, 0.0, 0.0}};
+  EXPECT_FALSE(slam_.addOdometry({SquareDrive::stampAt(99) + 50000000, far * SquareDrive::odometryAt(99)}));
+  feed(100, 200, Pose::identity());
+  EXPECT_FALSE(slam_.addOdometry({SquareDrive::stampAt(199) + 50000000, Pose::identity()})) << "nor one set to zero";
+  feed(200, 220, Pose::identity());
+  EXPECT_EQ(slam_.parts().sessions.summary(slam_.map()).size(), 1U);
+  EXPECT_EQ(slam_.parts().assembler.counters().odometry_outliers, 2U);
+  EXPECT_EQ(slam_.parts().assembler.counters().frames, 219U) << "all but the newest, which waits";
+  EXPECT_TRUE(latestCovOf(slam_));
+}
+
 TEST_P(SessionsTest, ADriveIsOneSession) {
   feed(0, 300, Pose::identity());
   feed(300, 320, Pose::identity(), 20000000000);

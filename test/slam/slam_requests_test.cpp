@@ -227,7 +227,13 @@ TEST_F(SlamRequestsTest, WhatThereIsNotIsRefused) {
   closure.match = SquareDrive::stampAt(5);
   closure.cov(0, 0) = -1.0;
   expectInputError([&] { slam_.addClosure(closure); }, {"positive definite"});
+  closure.cov = 1e-14 * FixedAxesCov::Identity();
+  expectInputError([&] { slam_.addClosure(closure); }, {"below 1e-6"});
   closure.cov.setZero();
+  for (const double far_m : {1e308, -2e7}) {
+    closure.T_match_query.translation_m.y() = far_m;
+    expectInputError([&] { slam_.addClosure(closure); }, {"beyond 1e7 m"});
+  }
   closure.T_match_query.rotation.coeffs().setZero();
   expectInputError([&] { slam_.addClosure(closure); }, {"unit norm"});
 }

@@ -18,6 +18,7 @@ struct RefusedInput {
   std::size_t objects_bad_stamps = 0;
   std::size_t objects_without_transform = 0;
   std::string unconnected_frame;         ///< the newest one
+  std::size_t objects_given_up = 0;      ///< waited for odometry or tf when too many did, or a map was loaded or reset
   std::size_t objects_in_map_frame = 0;  ///< in the frame of the map, or in one that hangs on it
   std::size_t odometry_before_jump = 0;  ///< of a bag: time fell back after it, and another map began
   std::size_t objects_before_jump = 0;

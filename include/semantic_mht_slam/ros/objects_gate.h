@@ -21,8 +21,9 @@ namespace semantic_mht_slam {
 /// rise.
 class ObjectsGate {
  public:
-  ObjectsGate(const NodeConfig& frames, const ClassTable& classes, SensorTransforms& sensors)
-      : classes_(classes), sensors_(sensors), timeout_s_(frames.tf_timeout_s) {}
+  /// At most `most` messages wait; beyond that the oldest is given up.
+  ObjectsGate(const NodeConfig& frames, const ClassTable& classes, SensorTransforms& sensors, std::size_t most)
+      : classes_(classes), sensors_(sensors), timeout_s_(frames.tf_timeout_s), most_(most) {}
 
   /// A message has come at the time `now_s`, of any clock that goes on.
   void hold(const SemanticObjectArray& message, const OdometryGate& odometry, double now_s, RefusedInput& refused);
@@ -36,7 +37,7 @@ class ObjectsGate {
   const std::string& fixedFrame() const { return fixed_frame_; }
 
   /// Gives up what waits.
-  void clear() { waiting_.clear(); }
+  void clear(RefusedInput& refused);
 
  private:
   struct Waiting {
@@ -50,6 +51,7 @@ class ObjectsGate {
   const ClassTable& classes_;
   SensorTransforms& sensors_;
   const double timeout_s_;
+  const std::size_t most_;
   std::deque<Waiting> waiting_;
   std::optional<Stamp> newest_;  ///< of those that came
   std::string fixed_frame_;

@@ -34,6 +34,9 @@ class OdometryGate {
   std::vector<nav_msgs::Odometry> pass(const nav_msgs::Odometry& message, const std::optional<Stamp>& latest,
                                        RefusedInput& refused);
 
+  /// No message comes any more that could confirm the one that is held.
+  void giveUpHeld(RefusedInput& refused);
+
   /// True while a message that jumps waits for the next one.
   bool isHolding() const { return jump_.isHolding(); }
 

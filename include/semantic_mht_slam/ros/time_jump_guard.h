@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <utility>
@@ -10,20 +11,27 @@
 
 namespace semantic_mht_slam {
 
-/// Keeps one wrong stamp from upsetting the estimator: an odometry message that jumps in time, back or far ahead, is
-/// held until the next one tells whether time really jumped (it lies near the held one) or the stamp was wrong (it goes
-/// on where the others were).
+/// Keeps one wrong stamp from upsetting the estimator: an odometry message that jumps in time, back or ahead, is held
+/// until the next one tells whether time really jumped (it lies near the held one) or the stamp was wrong (it goes on
+/// where the others were).
 class TimeJumpGuard {
  public:
-  /// Falling back by more than `back` is a jump back.
-  explicit TimeJumpGuard(Stamp back) : back_(back) {}
+  /// Falling back by more than `disorder` is a jump back; a step ahead that is larger, and many times larger than the
+  /// one before, is one ahead.
+  explicit TimeJumpGuard(Stamp disorder) : disorder_(disorder) {}
 
   /// True for a stamp that falls back: time jumped, or the stamp is wrong.
-  bool isBack(Stamp stamp, const std::optional<Stamp>& latest) const { return latest && stamp < *latest - back_; }
+  bool isBack(Stamp stamp, const std::optional<Stamp>& latest) const { return latest && stamp < *latest - disorder_; }
 
   /// True for a message that jumps while none is held.
   bool isUnconfirmed(Stamp stamp, const std::optional<Stamp>& latest) const {
-    return !held_ && (isBack(stamp, latest) || (latest && stamp > *latest + kAhead));
+    if (held_ || !latest) return false;
+    return isBack(stamp, latest) || stamp - *latest > std::max(disorder_, kSteps * step_);
+  }
+
+  /// A message is used that comes after `latest`.
+  void noteStep(Stamp stamp, const std::optional<Stamp>& latest) {
+    if (latest && stamp > *latest) step_ = stamp - *latest;
   }
 
   void hold(const nav_msgs::Odometry& message) { held_ = message; }
@@ -39,9 +47,10 @@ class TimeJumpGuard {
   }
 
  private:
-  static constexpr Stamp kAhead = 60LL * 1000000000LL;
+  static constexpr Stamp kSteps = 10;
 
-  Stamp back_;
+  Stamp disorder_;
+  Stamp step_ = 0;  ///< between the last two messages that were used
   std::optional<nav_msgs::Odometry> held_;
 };
 

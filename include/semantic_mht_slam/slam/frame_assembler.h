@@ -29,12 +29,13 @@ struct InputCounters {
   std::size_t odometry = 0;                 ///< odometry samples used
   std::size_t odometry_invalid = 0;         ///< dropped: not usable (see `isUsable`)
   std::size_t odometry_not_rising = 0;      ///< dropped: stamp not after the one before
+  std::size_t odometry_outliers = 0;        ///< dropped: no motion leads there, and the next sample goes on without it
   std::size_t frames = 0;                   ///< detector frames used
   std::size_t frames_before_odometry = 0;   ///< dropped: older than the odometry that is still known
   std::size_t frames_not_rising = 0;        ///< dropped: stamp not after the frame before, or far ahead of the next one
   std::size_t frames_far_ahead = 0;         ///< dropped: ahead of the odometry by more than its history is long
   std::size_t frames_in_odometry_gap = 0;   ///< dropped: odometry around the stamp is too far apart
-  std::size_t frames_waiting_too_long = 0;  ///< dropped: too many frames wait for odometry
+  std::size_t frames_waiting_too_long = 0;  ///< dropped: no odometry came for them in time, or in their session
   std::size_t detections = 0;               ///< detections in the frames used
   std::size_t detections_invalid = 0;       ///< dropped: position, covariance, score or size cannot be used
   std::size_t detections_at_origin = 0;     ///< dropped: exactly 0, 0, 0, where a sensor puts what it has no range of
@@ -66,8 +67,14 @@ class FrameAssembler {
   /// A frame that it gave was not looked at, as the vehicle stands.
   void countStanding() { ++counters_.frames_standing; }
 
-  /// Another odometry begins: forgets the one so far and what waits for it; counts go on.
-  void beginSession();
+  /// A sample was not taken, as no motion leads there.
+  void countOutlier() { ++counters_.odometry_outliers; }
+
+  /// Another odometry begins at `begin`: forgets the one so far and drops what waits for it; counts go on.
+  void beginSession(Stamp begin);
+
+  /// Frames that wait for odometry.
+  std::size_t waiting() const { return waiting_.size(); }
 
   /// Frames are counted from `next` on.
   void countFrom(std::size_t next) { next_index_ = next; }

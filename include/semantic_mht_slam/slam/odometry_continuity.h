@@ -33,4 +33,7 @@ class OdometryContinuity {
   double turn_rate_rad_per_s_ = 0.0;
 };
 
+/// Whether a vehicle of which nothing is known may come from one sample to the next.
+bool mayFollow(const StampedPose& sample, const StampedPose& next);
+
 }  // namespace semantic_mht_slam

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -88,6 +89,7 @@ struct SlamParts {
   double tied_at_m = 0.0;             ///< driven when localization last gave mapping a pose
   double mapping_s = 0.0;             ///< wall time that the mapper took so far (association, hypotheses, fusion)
   OdometryContinuity continuity = {};
+  std::optional<StampedPose> unconfirmed = {};  ///< sample that no motion leads to, until the next one is here
   Standstill standing = {};
   DetectorRange detector_range = {};
   double range_factor = 1.0;                 ///< of the detector by the reference, as far as it is known
@@ -121,7 +123,8 @@ class Slam {
   SlamState snapshot() const;
 
   /// One odometry sample T_odom_base. Bad ones are dropped and counted; true if it was used. One that no motion leads
-  /// to from the newest begins a session.
+  /// to from the newest waits for the next one: if a motion leads to that from the one that waits, they begin a
+  /// session, else that is dropped.
   bool addOdometry(const StampedPose& T_odom_base);
 
   /// What the detector saw at `stamp`, in the base frame. Bad ones are dropped and counted.
@@ -140,7 +143,7 @@ class Slam {
 
   /// The odometry that comes now has nothing to do with the one before, neither its frame nor its stamps: the vehicle
   /// is lost until it finds itself in the map. Without any finished submap it just begins to map.
-  void beginSession();
+  void beginSession() { beginSession(std::numeric_limits<Stamp>::max()); }
 
   // What a person knows better. Each of these ends the current submap, so that what it saw is in the map. They throw
   // InputError, and change nothing else, for what there is not in the map.
@@ -187,6 +190,10 @@ class Slam {
   const Mode& mode() const { return parts_.mode; }
 
  private:
+  bool isReached(const StampedPose& T_odom_base);
+  bool take(const StampedPose& T_odom_base);
+  /// Frames from `begin` on are of the session.
+  void beginSession(Stamp begin);
   void processReadyFrames();
   void process(const Frame& frame);
   /// The lengths are those of the detector from now on; the frames that waited for it are mapped.
