@@ -1,5 +1,6 @@
 #include "semantic_mht_slam/ros/map_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -180,8 +181,11 @@ TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
     std::ofstream(damaged, std::ios::binary) << bytes;
     try {
       const LoadedMap loaded = read(damaged);
-      for (std::size_t i = 0; i < loaded.state.sections.size(); ++i) {
-        EXPECT_TRUE(loaded.state.sections[i].bytes == map_.state.sections[i].bytes) << trial;
+      for (const StateSection& section : map_.state.sections) {
+        const auto is_it = [&](const StateSection& other) { return other.name == section.name; };
+        const auto found = std::find_if(loaded.state.sections.begin(), loaded.state.sections.end(), is_it);
+        ASSERT_NE(found, loaded.state.sections.end()) << trial << section.name;
+        EXPECT_TRUE(found->bytes == section.bytes) << trial << section.name;  // in whatever order they stand
       }
     } catch (const InputError&) {
       ++refused;
