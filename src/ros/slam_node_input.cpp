@@ -66,7 +66,7 @@ void SlamNode::publishOverduePose() {
   RefusedInput counted_by_worker;
   const StampedPose T_odom_base{toStamp(message->header.stamp), fromMessage(message->pose.pose)};
   if (!gate_.isUsable(*message, counted_by_worker) || !T_odom_base.T_world_base.isValid()) return;
-  publisher_.publishDeadReckoning(T_odom_base, live_.get());
+  other_failures_.run("pose by odometry", [&] { publisher_.publishDeadReckoning(T_odom_base, live_.get()); });
 }
 
 void SlamNode::receive(const SemanticObjectArrayConstPtr& message, const std::string& publisher) {
