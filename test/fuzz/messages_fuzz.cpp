@@ -135,7 +135,7 @@ class FuzzedMessages {
   tf2::BufferCore transforms_;
   OdometryGate gate_;
   SensorTransforms sensors_;
-  ObjectsGate objects_{frames_, classes_, sensors_};
+  ObjectsGate objects_{frames_, classes_, sensors_, 100};
   InputPlausibility plausibility_;
   RefusedInput refused_;
   double now_s_ = 0.0;
