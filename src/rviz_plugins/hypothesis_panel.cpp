@@ -136,6 +136,10 @@ void HypothesisPanel::onInitialize() {
     map_ = message;
     has_new_map_ = true;
   });
+  pose_subscriber_ = handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+      "pose", 1, [this](const geometry_msgs::PoseWithCovarianceStampedConstPtr& message) {
+        view_.follow(*message, vis_manager_);
+      });
   ambiguous_subscriber_ = handle_.subscribe<AmbiguousDetections>(
       "ambiguous_detections", 2, [this](const AmbiguousDetectionsConstPtr& message) { ambiguous_ = message; });
   diagnostics_subscriber_ = handle_.subscribe<diagnostic_msgs::DiagnosticArray>(
