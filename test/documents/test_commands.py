@@ -41,6 +41,11 @@ def words_of(command):
     return words[2:] if words[:2] == ["rosrun", PACKAGE] else words
 
 
+def module_of(test):
+    """The module whose test a program is."""
+    return re.sub("_test$", "", os.path.basename(test))
+
+
 class CommandsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -90,7 +95,7 @@ class CommandsTest(unittest.TestCase):
         self.assertTrue(os.access(script, os.X_OK), words)
         for option in words[1:]:
             known = script.read_text(encoding="utf-8")
-            is_test = (REPOSITORY / "test" / option.removesuffix("_test")).is_dir()
+            is_test = (REPOSITORY / "test" / module_of(option)).is_dir()
             is_count = option.isdigit() and "SECONDS" in known
             self.assertTrue(option in known or is_count or (words[0] == "scripts/test.sh" and is_test), words)
 
@@ -115,7 +120,7 @@ class CommandsTest(unittest.TestCase):
         elif words[0].startswith("scripts/"):
             self.check_script(words)
         elif words[0].startswith("build/"):
-            self.assertIn(os.path.basename(words[0]).removesuffix("_test"), os.listdir(REPOSITORY / "test"))
+            self.assertIn(module_of(words[0]), os.listdir(REPOSITORY / "test"))
         elif words[0] in RUN and not NEEDS & set(words):
             self.run_program(words[0], *words[1:])
         else:
