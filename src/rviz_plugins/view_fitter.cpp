@@ -33,9 +33,9 @@ rviz::Property* placeOf(rviz::Property& view) {
   return childOf(view, "Scale") != nullptr ? &view : nullptr;
 }
 
-bool isInFixedFrame(const rviz::Property& view) {
+bool hasTarget(const rviz::Property& view, const QString& frame) {
   const rviz::Property* target = childOf(view, "Target Frame");
-  return target != nullptr && target->getValue().toString() == rviz::TfFrameProperty::FIXED_FRAME_STRING;
+  return target != nullptr && target->getValue().toString() == frame;
 }
 
 /// Those coordinates that the place of a view has; 0 for the others.
@@ -66,6 +66,7 @@ void ViewFitter::fit(const SemanticMap& map, rviz::VisualizationManager* rviz) {
   if (rviz == nullptr || is_users_) return;
   rviz::ViewController* view = rviz->getViewManager()->getCurrent();
   if (view == nullptr || view->getClassId() != "rviz/TopDownOrtho") return;
+  if (hasTarget(*view, QString::fromStdString(map.header.frame_id))) return;
   rviz::Property* scale = view->subProp("Scale");
   const float present = scale->getValue().toFloat();
   is_users_ = scale_ && std::abs(present - *scale_) > kSame * *scale_;
@@ -86,7 +87,7 @@ void ViewFitter::follow(const geometry_msgs::PoseWithCovarianceStamped& pose, co
 }
 
 void ViewFitter::follow(const Eigen::Vector3d& vehicle_m, rviz::Property& view) {
-  rviz::Property* place = isInFixedFrame(view) ? placeOf(view) : nullptr;
+  rviz::Property* place = hasTarget(view, rviz::TfFrameProperty::FIXED_FRAME_STRING) ? placeOf(view) : nullptr;
   const bool is_new = followed_ != &view;
   followed_ = place == nullptr ? nullptr : &view;
   if (place == nullptr) return;

@@ -16,7 +16,8 @@ class VisualizationManager;
 namespace semantic_mht_slam {
 
 /// Keeps the map and the vehicle in view: sets the scale of rviz's view from above, until the user sets another one,
-/// and moves the view along with the vehicle, by the topic `pose`: nobody need publish the vehicle's frame on tf.
+/// and moves the view along with the vehicle, by the topic `pose`: nobody need publish the vehicle's frame on tf. A
+/// view whose target frame is by name that of the map looks at a place of the map, and stays as it is.
 class ViewFitter {
  public:
   /// `rviz` may be null: then nothing is done.
