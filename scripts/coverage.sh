@@ -29,7 +29,7 @@ from pathlib import Path
 folder, repository, minimum, modules = Path(sys.argv[1]), sys.argv[2], float(sys.argv[3]), set(sys.argv[4:])
 rows = []
 for file in json.loads((folder / "coverage.json").read_text())["data"][0]["files"]:
-    name = os.path.normpath(os.path.join(folder, file["filename"])).removeprefix(repository + "/")
+    name = os.path.relpath(os.path.join(folder, file["filename"]), repository)
     parts = name.split("/")
     module = parts[1] if parts[0] == "src" else parts[2] if parts[0] == "include" else ""
     lines = file["summary"]["lines"]

@@ -1,5 +1,6 @@
 # Sourced: replay_in_rviz BAG RATE [X Y SCALE] plays a bag with kitti.launch on a display and with a master of its own, until
-# the bag is over; X, Y: middle of the picture in the map, SCALE: pixels a metre. Everything ends with the script.
+# the bag is over; X, Y: middle of the picture in the map, SCALE: pixels a metre; without them the view follows the vehicle.
+# Everything ends with the script.
 _repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # shellcheck source=scripts/environment.sh
 source "$_repository/scripts/environment.sh"
@@ -24,8 +25,11 @@ replay_in_rviz() {
   _display=$!
   DISPLAY=:$(head -n 1 "$HIDDEN/display")
   export DISPLAY
-  sed "s/^      X: .*/      X: ${3:-150}/; s/^      Y: .*/      Y: ${4:--50}/; s/^      Scale: .*/      Scale: ${5:-1.2}/" \
-    "$_repository/rviz/slam.rviz" >"$HIDDEN/view.rviz"
+  cp "$_repository/rviz/slam.rviz" "$HIDDEN/view.rviz"
+  if [ $# -gt 2 ]; then
+    sed -i "s/^      X: .*/      X: $3/; s/^      Y: .*/      Y: ${4:-0}/; s/^      Scale: .*/      Scale: ${5:-1.2}/
+      s/^      Target Frame: .*/      Target Frame: map/" "$HIDDEN/view.rviz"
+  fi
   : >"$HIDDEN/log"
   roslaunch -p "$port" semantic_mht_slam kitti.launch bag:="$bag" rate:="$rate" rviz_config:="$HIDDEN/view.rviz" \
     >"$HIDDEN/log" 2>&1 &

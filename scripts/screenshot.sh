@@ -8,5 +8,5 @@ replay_in_rviz "$1" "${3:-10}" "${@:4}"
 rosservice call /finish_submap >/dev/null
 sleep 5  # for rviz to draw
 import -window root "$HIDDEN/picture.png"
-convert "$HIDDEN/picture.png" -colors 256 "PNG8:$2"
+convert "$HIDDEN/picture.png" -colors 128 "PNG8:$2"
 ls -l "$2"

@@ -56,6 +56,10 @@ void requireUsed(const Recording& recording, const RunResult& result, Method met
   if (!result.trajectory.empty() && is_mapped) return;
   std::string problem = result.trajectory.empty() ? "no odometry sample could be used" : "no objects could be used";
   for (const std::string& line : droppedInput(counters, recording.refused, recording.names)) problem += "; " + line;
+  if (!recording.refused.unknown_classes.empty()) {
+    problem +=
+        "; fix: give the class table of this detector, --set class_table=FILE (in slam.launch: class_table:=FILE)";
+  }
   throw InputError(problem);
 }
 

@@ -165,7 +165,7 @@ void findObjectsFault(const NodeStatus& now, const NodeStatus& before, Finding& 
       "input/odometry_history (" +
           seconds(now.odometry_history_s) + ") is how late they may be");
   finding.warn(!classes.empty(), classes + " on " + objects.topic + " not in the class table " + now.class_table,
-               "add the id to the table, or set class_table to the table of this detector");
+               "add the id to the table, or give the table of this detector: class_table:=FILE");
   finding.warn(counters.detections_invalid > old.detections_invalid,
                objects.topic + " holds objects whose position, covariance, score or size cannot be used",
                "positions must be finite, covariances positive definite or all zero, scores in [0, 1] or -1");

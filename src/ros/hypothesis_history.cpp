@@ -23,9 +23,9 @@ void HypothesisHistory::add(const HypothesisTree& message) {
       branch.parent = hypothesis.parent_id;
       branch.born = std::max(0, now_ - static_cast<int>(hypothesis.age));
       const auto parent = branches_.find(branch.parent);
-      if (parent != branches_.end()) parent->second.seen = std::max(parent->second.seen, branch.born);
+      if (parent != branches_.end()) parent->second.end = std::max(parent->second.end, branch.born);
     }
-    branch.seen = now_;
+    branch.end = branch.told = now_;
     branch.weight = hypothesis.weight;
   }
   forget();
@@ -35,7 +35,7 @@ void HypothesisHistory::add(const HypothesisTree& message) {
 void HypothesisHistory::forget() {
   const std::set<std::uint64_t> kept = wayToLiving();
   for (auto branch = branches_.begin(); branch != branches_.end();) {
-    const bool is_old = branch->second.seen < now_ - kKept;
+    const bool is_old = branch->second.end < now_ - kKept;
     branch = is_old && kept.count(branch->first) == 0 ? branches_.erase(branch) : std::next(branch);
   }
 }
@@ -44,7 +44,7 @@ void HypothesisHistory::forget() {
 std::set<std::uint64_t> HypothesisHistory::wayToLiving() const {
   std::set<std::uint64_t> way;
   for (const auto& [id, branch] : branches_) {
-    if (branch.seen < now_) continue;
+    if (branch.told < now_) continue;
     for (auto next = branches_.find(id); next != branches_.end() && way.insert(next->first).second;) {
       next = branches_.find(next->second.parent);
     }
@@ -52,23 +52,27 @@ std::set<std::uint64_t> HypothesisHistory::wayToLiving() const {
   return way;
 }
 
-/// Gives rows to a hypothesis and to what comes from it; returns its own.
+/// Gives rows to a hypothesis and to what comes from it; returns its own. What lives has a row for itself, that its
+/// label lies on no other one; what only leads there is in the middle of its children.
 double HypothesisHistory::place(std::uint64_t id, const std::map<std::uint64_t, std::vector<std::uint64_t>>& children,
                                 double& next_row, std::map<std::uint64_t, double>& rows) const {
   const auto found = children.find(id);
-  if (found == children.end()) return rows[id] = next_row++;
+  const bool is_living = branches_.at(id).told == now_;
+  if (is_living || found == children.end()) rows[id] = next_row++;
+  if (found == children.end()) return rows[id];
   double first = 0.0;
   double last = 0.0;
   for (std::size_t i = 0; i < found->second.size(); ++i) {
     last = place(found->second[i], children, next_row, rows);
     if (i == 0) first = last;
   }
-  return rows[id] = 0.5 * (first + last);
+  if (!is_living) rows[id] = 0.5 * (first + last);
+  return rows[id];
 }
 
 std::vector<DrawnHypothesis> HypothesisHistory::drawn(int frames) const {
   const int oldest = std::max(0, now_ - frames);
-  const auto isShown = [&](const Branch& branch) { return branch.seen >= oldest; };
+  const auto isShown = [&](const Branch& branch) { return branch.end >= oldest; };
   std::map<std::uint64_t, std::vector<std::uint64_t>> children;
   std::vector<std::uint64_t> roots;
   for (const auto& [id, branch] : branches_) {
@@ -88,10 +92,9 @@ std::vector<DrawnHypothesis> HypothesisHistory::drawn(int frames) const {
   for (const auto& [id, row] : rows) {
     const Branch& branch = branches_.at(id);
     const auto parent = rows.find(branch.parent);
-    const bool is_living = branch.seen == now_;
-    result.push_back({id, position(branch.born), position(branch.seen), row,
-                      parent == rows.end() ? row : parent->second, is_living ? branch.weight : 0.0, is_living,
-                      !is_living && way.count(id) > 0});
+    const bool is_living = branch.told == now_;
+    result.push_back({id, position(branch.born), position(branch.end), row, parent == rows.end() ? row : parent->second,
+                      is_living ? branch.weight : 0.0, is_living, !is_living && way.count(id) > 0});
   }
   return result;
 }

@@ -48,9 +48,7 @@ HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   status_ = makeText("status", "");
   status_->setFrameStyle(QFrame::StyledPanel);
   status_->setMinimumHeight(3 * status_->fontMetrics().height());  // so that no answer moves the buttons
-  layout->addWidget(counters_);
-  layout->addWidget(legend_);
-  layout->addWidget(fault_label_);
+  for (QLabel* label : {counters_, legend_, fault_label_}) layout->addWidget(label);
   layout->addWidget(tree_view_ = new TreeView);
   layout->addWidget(makeTable(), 1);
   layout->addWidget(ambiguity_view_ = new AmbiguityView, 1);
@@ -136,11 +134,12 @@ void HypothesisPanel::onInitialize() {
     map_ = message;
     has_new_map_ = true;
   });
+  pose_subscriber_ = handle_.subscribe<geometry_msgs::PoseWithCovarianceStamped>(
+      "pose", 1, [this](const auto& message) { view_.follow(*message, vis_manager_); });
   ambiguous_subscriber_ = handle_.subscribe<AmbiguousDetections>(
       "ambiguous_detections", 2, [this](const AmbiguousDetectionsConstPtr& message) { ambiguous_ = message; });
   diagnostics_subscriber_ = handle_.subscribe<diagnostic_msgs::DiagnosticArray>(
-      "/diagnostics", 10,
-      [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { noteDiagnostics(*message); });
+      "/diagnostics", 10, [this](const auto& message) { noteDiagnostics(*message); });
   click_subscriber_ = handle_.subscribe<geometry_msgs::PointStamped>(
       "/clicked_point", 5, [this](const geometry_msgs::PointStampedConstPtr& message) { showLandmark(*message); });
   auto* timer = new QTimer(this);

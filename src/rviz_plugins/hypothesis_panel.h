@@ -60,6 +60,7 @@ class HypothesisPanel : public rviz::Panel {
   ros::NodeHandle handle_;
   ros::Subscriber tree_subscriber_;
   ros::Subscriber map_subscriber_;
+  ros::Subscriber pose_subscriber_;
   ros::Subscriber ambiguous_subscriber_;
   ros::Subscriber diagnostics_subscriber_;
   ros::Subscriber click_subscriber_;

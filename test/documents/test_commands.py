@@ -18,7 +18,9 @@ import yaml
 REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGE = "semantic_mht_slam"
 PROGRAMS = Path(roslib.packages.find_node(PACKAGE, "slam_offline")[0]).parent
-RUN = {"slam_offline", "evaluate", "kitti_to_bag", "extract_objects", "map_info"}  # on a simulated drive
+RUN = {"slam_offline", "evaluate", "kitti_to_bag", "extract_objects", "map_info", "merge_maps",
+       "simulate_drive"}  # on a simulated drive
+OTHERS = {"source", "cd", "roscore", "rosdep", "catkin_make"}  # not of this package
 RUN_ELSEWHERE = {"object_relay": "object_relay/test_program.py", "benchmark": "benchmark/test_benchmark.py"}
 NEEDS = {"000001.png", "sequences/00", "objects.bag"}  # what of these files the other tests make
 
@@ -41,6 +43,11 @@ def words_of(command):
     return words[2:] if words[:2] == ["rosrun", PACKAGE] else words
 
 
+def module_of(test):
+    """The module whose test a program is."""
+    return re.sub("_test$", "", os.path.basename(test))
+
+
 class CommandsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -53,7 +60,9 @@ class CommandsTest(unittest.TestCase):
         os.symlink(drive, os.path.join(cls.folder, "DIR"))
         cls.run_program("slam_offline", "--bag", os.path.join(drive, "drive.bag"), "--output", "result")
         shutil.copy(os.path.join(cls.folder, "result", "trajectory.tum"), os.path.join(cls.folder, "truth.tum"))
-        shutil.copy(os.path.join(cls.folder, "result", "map.bag"), os.path.join(cls.folder, "town.bag"))
+        for name in ("town.bag", "A.bag", "B.bag"):
+            shutil.copy(os.path.join(cls.folder, "result", "map.bag"), os.path.join(cls.folder, name))
+        os.symlink(REPOSITORY / "config", os.path.join(cls.folder, "config"))
         pole = [(8.0 + 0.01 * (i % 5), 2.0, 0.1 * (i // 5)) for i in range(100)]
         with open(os.path.join(cls.folder, "000052.bin"), "wb") as file:
             file.write(b"".join(struct.pack("<4f", x, y, z, 0.5) for x, y, z in pole))
@@ -90,7 +99,7 @@ class CommandsTest(unittest.TestCase):
         self.assertTrue(os.access(script, os.X_OK), words)
         for option in words[1:]:
             known = script.read_text(encoding="utf-8")
-            is_test = (REPOSITORY / "test" / option.removesuffix("_test")).is_dir()
+            is_test = (REPOSITORY / "test" / module_of(option)).is_dir()
             is_count = option.isdigit() and "SECONDS" in known
             self.assertTrue(option in known or is_count or (words[0] == "scripts/test.sh" and is_test), words)
 
@@ -104,7 +113,7 @@ class CommandsTest(unittest.TestCase):
 
     def check(self, command):
         words = words_of(command)
-        if words[0] in ("source", "roscore"):
+        if words[0] in OTHERS:
             return
         if words[0] == "rosparam":
             self.assertTrue((REPOSITORY / words[2]).exists())
@@ -115,9 +124,9 @@ class CommandsTest(unittest.TestCase):
         elif words[0].startswith("scripts/"):
             self.check_script(words)
         elif words[0].startswith("build/"):
-            self.assertIn(os.path.basename(words[0]).removesuffix("_test"), os.listdir(REPOSITORY / "test"))
+            self.assertIn(module_of(words[0]), os.listdir(REPOSITORY / "test"))
         elif words[0] in RUN and not NEEDS & set(words):
-            self.run_program(words[0], *words[1:])
+            self.run_program(words[0], *(re.sub("^~", self.folder, word) for word in words[1:]))
         else:
             self.check_options(words)
 

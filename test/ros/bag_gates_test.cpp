@@ -253,6 +253,18 @@ TEST_F(BagGatesTest, ABagOfWhichNothingCanBeUsedIsAnErrorThatNamesTheCause) {
   expectInputError([&] { run(); }, {"/odometry", "'camera_init'", "node.odom_frame"});
 }
 
+TEST_F(BagGatesTest, IfNoClassIsInTheTableTheErrorNamesTheFix) {
+  change_objects_ = [](int, SemanticObjectArray& message) {
+    for (SemanticObject& object : message.objects) object.class_id = 77;
+  };
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);
+    addDrive(bag);
+  }
+  expectInputError([&] { run(); }, {"no objects could be used", "120 objects dropped: class id '77'",
+                                    "--set class_table=FILE", "class_table:=FILE"});
+}
+
 TEST_F(BagGatesTest, SlowOdometryIsNamed) {
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);

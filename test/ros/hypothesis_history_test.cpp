@@ -1,5 +1,8 @@
 #include "semantic_mht_slam/ros/hypothesis_history.h"
 
+#include <cmath>
+#include <set>
+
 #include <gtest/gtest.h>
 
 namespace semantic_mht_slam {
@@ -54,6 +57,39 @@ TEST(HypothesisHistoryTest, ABranchingIsATreeWithWhatWasDropped) {
   EXPECT_LT(dropped.end, 1.0);
   EXPECT_GT(dropped.end, dropped.begin);
   EXPECT_EQ(kept.weight, 1.0);
+}
+
+TEST(HypothesisHistoryTest, WhatBranchesInTheNewestFrameLivesNoMore) {
+  HypothesisHistory history;
+  history.add(treeOf({{1, 0, 1.0, 0}}));
+  history.add(treeOf({{1, 0, 0.59, 1}, {2, 0, 0.41, 0}}));
+  history.add(treeOf({{3, 1, 0.24, 0}, {4, 2, 0.5, 0}, {5, 2, 0.26, 0}}));
+  const std::vector<DrawnHypothesis> drawn = history.drawn(100);
+  const DrawnHypothesis parent = find(drawn, 1);
+  EXPECT_TRUE(parent.leads_to_living && !parent.is_living);
+  EXPECT_EQ(parent.weight, 0.0);
+  EXPECT_EQ(parent.end, 1.0);
+  EXPECT_TRUE(find(drawn, 3).is_living);
+  EXPECT_EQ(HypothesisHistory::rows(drawn), 3U);
+}
+
+TEST(HypothesisHistoryTest, WhatLivesHasARowOfItsOwnThatLabelsDoNotOverlap) {
+  HypothesisHistory history;
+  history.add(treeOf({{1, 0, 0.6, 0}, {2, 0, 0.4, 0}}));
+  // 1 lives on beside its one child, 2 beside its three; 6 has a child of its own.
+  const std::vector<Leaf> leaves = {{1, 0, 0.59, 1}, {3, 1, 0.24, 0}, {2, 0, 0.05, 1}, {4, 2, 0.04, 0},
+                                    {5, 2, 0.03, 0}, {6, 2, 0.03, 0}, {7, 6, 0.02, 0}};
+  history.add(treeOf(leaves));
+  const std::vector<DrawnHypothesis> drawn = history.drawn(100);
+  ASSERT_EQ(drawn.size(), leaves.size());
+  std::set<double> rows;
+  for (const DrawnHypothesis& hypothesis : drawn) {
+    EXPECT_TRUE(hypothesis.is_living);
+    EXPECT_EQ(hypothesis.row, std::floor(hypothesis.row)) << hypothesis.id;
+    EXPECT_TRUE(rows.insert(hypothesis.row).second) << hypothesis.id << " lies on another one";
+  }
+  EXPECT_EQ(HypothesisHistory::rows(drawn), leaves.size()) << "and no row is empty";
+  EXPECT_EQ(find(drawn, 3).parent_row, find(drawn, 1).row);
 }
 
 TEST(HypothesisHistoryTest, TheNextSubmapBeginsAnewAndNoHypothesesAreNoTree) {

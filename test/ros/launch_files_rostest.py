@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What the launch files make of their arguments, and how they end when they cannot begin."""
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -8,6 +9,9 @@ import tempfile
 import unittest
 
 import rosgraph
+import roslaunch.config
+import roslaunch.xmlloader
+import rospkg
 import rospy
 import rostest
 import yaml
@@ -68,6 +72,15 @@ class LaunchFilesTest(unittest.TestCase):
                     "map": "/town.bag", "mode": "localization"}
         self.assertEqual({name: given.get("/slam_node/node/" + name) for name in expected}, expected, said)
         self.assertEqual(given["/slam_node/class_table"], "mine.yaml")
+
+    def test_rviz_shows_the_frame_of_the_map(self):
+        for launch in (["slam.launch"], ["localization.launch", "map:=/town.bag"]):
+            for arguments, frame in ([], "map"), (["map_frame:=robot1/map"], "robot1/map"):
+                nodes = roslaunch.config.ROSLaunchConfig()
+                file = os.path.join(rospkg.RosPack().get_path(PACKAGE), "launch", launch[0])
+                roslaunch.xmlloader.XmlLoader().load(file, nodes, argv=launch + arguments, verbose=False)
+                said = [shlex.split(node.args)[-2:] for node in nodes.nodes if node.type == "rviz"]
+                self.assertEqual(said, [["-f", frame]], launch)
 
     def test_localization_needs_a_map_and_localizes(self):
         given, _ = parameters("localization.launch", "map:=/town.bag")

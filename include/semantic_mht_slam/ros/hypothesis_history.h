@@ -16,7 +16,7 @@ struct DrawnHypothesis {
   std::uint64_t id = 0;
   double begin = 0.0;  ///< 0: the oldest frame that is drawn, 1: now
   double end = 1.0;
-  double row = 0.0;         ///< from 0; leaves have whole numbers
+  double row = 0.0;         ///< from 0; leaves and what lives have whole numbers of their own
   double parent_row = 0.0;  ///< its own if it has no parent in the drawing
   double weight = 0.0;      ///< of one that lives
   bool is_living = false;
@@ -40,7 +40,8 @@ class HypothesisHistory {
   struct Branch {
     std::uint64_t parent = 0;
     int born = 0;
-    int seen = 0;  ///< last
+    int end = 0;   ///< last frame that it is drawn to: that in which it branched, or the last one that told of it
+    int told = 0;  ///< last message that has it
     double weight = 0.0;
   };
 
