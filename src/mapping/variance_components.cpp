@@ -11,7 +11,8 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr std::size_t kStretches = 10;  // that are gone through again
-constexpr int kPasses = 4;
+constexpr int kMostPasses = 4;
+constexpr double kSettled = 0.01;  // standard deviations; a smaller step is the last
 constexpr double kLargestStep = 1.0;
 constexpr double kMostErrorDeviations = 3.0;  // of an error from what the others make of it
 constexpr double kLeastComponentVariance = 1e-14;
@@ -79,7 +80,7 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
 }
 
 void VarianceComponents::fit() {
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
     Eigen::VectorXd gradient = prior_precision_ * (prior_mean_ - log_variance_);
     Eigen::MatrixXd fisher = prior_precision_;
     Eigen::MatrixXd effect_information = effect_information_;
@@ -96,9 +97,11 @@ void VarianceComponents::fit() {
     const Eigen::VectorXd step = uncertainty * gradient;
     log_variance_ += step / std::max(1.0, step.cwiseAbs().maxCoeff() / kLargestStep);
     log_uncertainty_ = uncertainty.diagonal();
-    if (effect_.size() == 0) continue;
-    effect_cov_ = effect_information.inverse();
-    effect_ = effect_cov_ * effect_vector;
+    if (effect_.size() > 0) {
+      effect_cov_ = effect_information.inverse();
+      effect_ = effect_cov_ * effect_vector;
+    }
+    if ((step.array().square() <= kSettled * kSettled * uncertainty.diagonal().array()).all()) return;
   }
 }
 
