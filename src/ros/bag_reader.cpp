@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/objects_gate.h"
@@ -195,8 +195,7 @@ class BagReader {
 
 Recording readBag(const std::string& path, const ClassTable& classes, const NodeConfig& frames,
                   const BagLayout& layout) {
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError("cannot read '" + path + "': no such file, or no regular one");
+  static_cast<void>(sizeOfFile(path));  // refuses what is no file, with the system's reason
   return BagReader(path, classes, frames, layout).read();
 }
 

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/output_file.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -34,7 +35,7 @@ fs::path insidePath(const std::string& asked, const std::string& map_folder) {
   if (asked.empty()) throw InputError("the path is empty");
   const fs::path folder = withHome(map_folder);
   const fs::path given = withHome(asked);
-  const fs::path path = fs::absolute(given.is_absolute() ? given : folder / given).lexically_normal();
+  const fs::path path = absolutePath((given.is_absolute() ? given : folder / given).string());
   if (folder.empty()) return path;
   const fs::path inside = resolved(path);
   const fs::path root = resolved(folder);
