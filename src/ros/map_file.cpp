@@ -215,13 +215,24 @@ class MapReader {
   const KeepReading& keep_reading_;
 };
 
+/// Whether a bag says that it is a map, of whatever version: messages on the header's topic, all of its type.
+bool hasMapHeader(const rosbag::Bag& bag) {
+  rosbag::View view(bag, rosbag::TopicQuery(kHeaderTopic));
+  const std::vector<const rosbag::ConnectionInfo*> connections = view.getConnections();
+  return view.size() > 0 && std::all_of(connections.begin(), connections.end(), [](const rosbag::ConnectionInfo* one) {
+           return one->datatype == ros::message_traits::datatype<MapHeader>();
+         });
+}
+
 /// What is no map file is somebody's, and is not replaced by one. An empty file holds nothing.
 void requireMapOrNothing(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
   try {
-    rosbag::Bag bag(path, rosbag::bagmode::Read);
-    if (rosbag::View(bag, rosbag::TopicQuery(kHeaderTopic)).size() > 0) return;
+    requireModestBag(path);
+    const rosbag::Bag bag(path, rosbag::bagmode::Read);
+    if (hasMapHeader(bag)) return;
+  } catch (const InputError&) {  // no bag, or one that would take the memory
   } catch (const rosbag::BagException&) {
   }
   throw InputError("cannot write '" + absolutePath(path) + "': a file that is no map is there, and stays");
