@@ -66,7 +66,7 @@ void describe(NodeConfig& config, Fields& fields) {
   fields.add("publish_tf", config.publishes_tf, "Whether tf map -> odom is published; the topic pose says the same.");
   fields.add("map", config.map, "Map file to begin with, an absolute path; empty: a new map.");
   fields.add("map_folder", config.map_folder,
-             "Folder outside of which save_map and load_map neither read nor write; empty: anywhere.");
+             "Folder outside of which no service reads or writes files; empty: anywhere.");
   fields.add<StartMode>("mode", config.mode,
                         {{"mapping", StartMode::kMapping}, {"localization", StartMode::kLocalization}},
                         "What the node begins with: mapping goes on in `map`, localization leaves it as it is.");
