@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/label_map_file.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 /// A file beside another one, else one of the package.
 std::string locateBeside(const std::string& file, const std::string& name) {
   const fs::path beside = fs::path(file).parent_path() / name;
-  return fs::exists(beside) ? beside.string() : packageConfigFile(name);
+  return mayExist(beside.string()) ? beside.string() : packageConfigFile(name);
 }
 
 /// "labels_X.yaml" beside a table "classes_X.yaml"; empty if there is none.
@@ -23,13 +24,13 @@ std::string labelMapOf(const std::string& table) {
   const std::string name = fs::path(table).filename().string();
   if (name.compare(0, prefix.size(), prefix) != 0) return "";
   const fs::path map = fs::path(table).parent_path() / ("labels_" + name.substr(prefix.size()));
-  return fs::exists(map) ? map.string() : "";
+  return mayExist(map.string()) ? map.string() : "";
 }
 
 }  // namespace
 
 LabelledClasses loadLabelledClasses(const std::string& file) {
-  const std::string path = fs::exists(file) || fs::path(file).is_absolute() ? file : packageConfigFile(file);
+  const std::string path = mayExist(file) || fs::path(file).is_absolute() ? file : packageConfigFile(file);
   if (isLabelMap(path)) {
     const ClassTable classes = readClassTable(locateBeside(path, classTableOfLabelMap(path)));
     return {classes, readLabelMap(path, classes)};

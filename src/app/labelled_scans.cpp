@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/scan_file.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/perception/cloud_extractor.h"
@@ -47,7 +48,7 @@ class ScanProblems {
 }  // namespace
 
 bool hasLabelledScans(const std::string& folder) {
-  return fs::is_directory(fs::path(folder) / "velodyne") && fs::is_directory(fs::path(folder) / "labels");
+  return isFolder(folder + "/velodyne") && isFolder(folder + "/labels");
 }
 
 ExtractionConfig loadExtractionConfig(const ClassTable& classes, const std::string& yaml_path,
@@ -71,7 +72,7 @@ ExtractedScans extractScans(const std::string& folder, const std::vector<Stamped
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const fs::path scan = fs::path(folder) / "velodyne" / (nameOf(i) + ".bin");
     const fs::path labels = fs::path(folder) / "labels" / (nameOf(i) + ".label");
-    if (fs::exists(scan) && fs::exists(labels)) {
+    if (mayExist(scan.string()) && mayExist(labels.string())) {
       const Extraction extraction =
           extractObjects(readLabelledScan(scan.string(), labels.string()), labelled.labels, config);
       problems.add(labels.string(), extraction);

@@ -1,6 +1,39 @@
 #include "semantic_mht_slam/app/refused_input.h"
 
+#include <algorithm>
+
+#include "semantic_mht_slam/common/text.h"
+
 namespace semantic_mht_slam {
+namespace {
+
+constexpr std::size_t kMostListed = 10;
+
+}  // namespace
+
+std::string UnknownClassList::text() const {
+  if (listed.empty()) return {};
+  std::vector<std::string> ids;
+  for (const auto& [id, count] : listed) ids.push_back(std::to_string(id));
+  return (ids.size() == 1 ? "class id " : "class ids ") + joined(ids) +
+         (others > 0 ? " and " + std::to_string(others) + " more" : "");
+}
+
+UnknownClassList listOf(const std::map<int, std::size_t>& unknown_classes) {
+  std::vector<std::pair<int, std::size_t>> by_objects(unknown_classes.begin(), unknown_classes.end());
+  std::stable_sort(by_objects.begin(), by_objects.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  UnknownClassList list;
+  for (const auto& [id, count] : by_objects) {
+    if (list.listed.size() < kMostListed) {
+      list.listed[id] = count;
+    } else {
+      ++list.others;
+      list.objects_of_others += count;
+    }
+  }
+  return list;
+}
 
 std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
                                       const InputNames& names) {
@@ -29,9 +62,13 @@ std::vector<std::string> droppedInput(const InputCounters& counters, const Refus
   objects(refused.objects_given_up, "they waited for odometry or tf, until too many did or another map began");
   objects(refused.objects_in_map_frame,
           "given in the frame of the map, which is what is sought; the sensor's is needed");
-  for (const auto& [id, count] : refused.unknown_classes) {
+  const UnknownClassList unknown = listOf(refused.unknown_classes);
+  for (const auto& [id, count] : unknown.listed) {
     report(count, names.objects, "objects dropped: class id '" + std::to_string(id) + "' is not in the class table");
   }
+  report(unknown.objects_of_others, names.objects,
+         "objects dropped: of other class ids that are not in the class table, " + std::to_string(unknown.others) +
+             " more");
   report(counters.detections_invalid, names.objects,
          "objects dropped: position, covariance, score or size is unusable");
   report(counters.detections_at_origin, names.objects, "objects dropped: they lie at exactly 0, 0, 0");

@@ -5,6 +5,8 @@
 
 #include "semantic_mht_slam/app/object_extractor_config.h"
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/existing_path.h"
+#include "semantic_mht_slam/io/output_file.h"
 #include "semantic_mht_slam/io/yaml_file.h"
 #include "semantic_mht_slam/simulation/scenario.h"
 
@@ -29,8 +31,8 @@ Method methodOf(const std::vector<Setting>& settings) {
 std::string located(const std::string& name, const std::string& folder) {
   const fs::path beside = fs::path(folder) / name;
   std::error_code error;
-  if (fs::equivalent(beside, packageConfigFile(name), error) || !fs::exists(beside)) return name;
-  return fs::absolute(beside).lexically_normal().string();
+  if (fs::equivalent(beside, packageConfigFile(name), error) || !mayExist(beside.string())) return name;
+  return absolutePath(beside.string());
 }
 
 /// Where a located file can be opened.
@@ -64,7 +66,7 @@ void describe(NodeConfig& config, Fields& fields) {
   fields.add("publish_tf", config.publishes_tf, "Whether tf map -> odom is published; the topic pose says the same.");
   fields.add("map", config.map, "Map file to begin with, an absolute path; empty: a new map.");
   fields.add("map_folder", config.map_folder,
-             "Folder outside of which save_map and load_map neither read nor write; empty: anywhere.");
+             "Folder outside of which no service reads or writes files; empty: anywhere.");
   fields.add<StartMode>("mode", config.mode,
                         {{"mapping", StartMode::kMapping}, {"localization", StartMode::kLocalization}},
                         "What the node begins with: mapping goes on in `map`, localization leaves it as it is.");
@@ -90,7 +92,7 @@ SystemConfig loadSystemConfig(const std::string& yaml_path, const std::vector<Se
   std::vector<Setting> settings = readSettings(yaml_path);
   for (Setting setting : overrides) {
     const bool names_file = setting.key == "class_table" || setting.key == "evaluator.tree";
-    if (names_file && fs::is_regular_file(setting.value)) setting.value = fs::absolute(setting.value).string();
+    if (names_file && mayExist(setting.value) && !isFolder(setting.value)) setting.value = absolutePath(setting.value);
     settings.push_back(std::move(setting));
   }
   return makeSystemConfig(settings);
@@ -183,7 +185,7 @@ std::string packageConfigFile(const std::string& name) {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   const fs::path prefix = program.parent_path().parent_path().parent_path();  // PREFIX/lib/semantic_mht_slam/program
   const fs::path installed = prefix / "share" / "semantic_mht_slam" / "config" / name;
-  if (!error && fs::exists(installed)) return installed.string();
+  if (!error && mayExist(installed.string())) return installed.string();
   return (fs::path(SEMANTIC_MHT_SLAM_SOURCE_CONFIG_DIR) / name).string();
 }
 

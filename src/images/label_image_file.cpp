@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -11,7 +12,10 @@
 namespace semantic_mht_slam {
 
 LabelImage readLabelImage(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError("cannot read '" + path + "': no such file");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw InputError("cannot read '" + path + "': no such file" + (error ? " (" + error.message() + ")" : ""));
+  }
   cv::Mat pixels;
   try {
     pixels = cv::imread(path, cv::IMREAD_UNCHANGED);

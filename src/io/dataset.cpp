@@ -4,6 +4,7 @@
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/calibration_file.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
@@ -20,7 +21,7 @@ std::string inside(const std::string& folder, const std::string& name) {
 /// A file that the user named: inside the folder if it is there, else as it stands.
 std::string locate(const std::string& folder, const std::string& name) {
   const std::string in_folder = inside(folder, name);
-  return fs::path(name).is_absolute() || (!fs::exists(in_folder) && fs::exists(name)) ? name : in_folder;
+  return fs::path(name).is_absolute() || (!mayExist(in_folder) && mayExist(name)) ? name : in_folder;
 }
 
 std::vector<Pose> readPoses(const std::string& path, const Pose& T_cam0_base, std::size_t frames) {
@@ -49,7 +50,7 @@ Pose toCamera(const Pose& T_world_base, const Pose& T_cam0_base) {
 }
 
 Dataset readDataset(const DatasetFiles& files, const ClassTable& classes) {
-  if (!fs::is_directory(files.folder)) throw InputError("no data-set folder '" + files.folder + "'");
+  if (!isFolder(files.folder)) throw InputError("no data-set folder '" + files.folder + "'");
   Dataset dataset;
   dataset.stamps = readTimes(inside(files.folder, "times.txt"));
   dataset.T_cam0_base = readCalibration(inside(files.folder, "calib.txt"));
@@ -61,7 +62,7 @@ Dataset readDataset(const DatasetFiles& files, const ClassTable& classes) {
     dataset.notice = std::move(objects.notice);
   }
   const std::string truth = (fs::path(files.folder) / "poses.txt").string();
-  if (fs::exists(truth)) dataset.T_map_base = readPoses(truth, dataset.T_cam0_base, dataset.frames());
+  if (mayExist(truth)) dataset.T_map_base = readPoses(truth, dataset.T_cam0_base, dataset.frames());
   return dataset;
 }
 

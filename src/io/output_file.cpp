@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <random>
 #include <system_error>
 
 #include <fcntl.h>
@@ -18,37 +15,21 @@
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/text_file.h"
 
+#include "temporary_name.h"
+
 namespace semantic_mht_slam {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* kMark = ".tmp-";
-constexpr std::size_t kDigits = 16;
-
-/// Not predictable, so that nobody can put something else there beforehand.
-std::string randomSuffix() {
-  std::random_device device;
-  const std::uint64_t number = (static_cast<std::uint64_t>(device()) << 32U) | device();
-  std::array<char, kDigits + 1> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(number));
-  return kMark + std::string(digits.data());
-}
-
-bool isTemporaryOf(const std::string& name, const std::string& file_name) {
-  const std::string begin = file_name + kMark;
-  return name.size() == begin.size() + kDigits && name.compare(0, begin.size(), begin) == 0 &&
-         name.find_first_not_of("0123456789abcdef", begin.size()) == std::string::npos;
-}
 
 /// Removes what killed programs left; a file that is being written is locked.
 void removeLeftOvers(const fs::path& path) {
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path.parent_path(), error)) {
-    if (!isTemporaryOf(entry.path().filename().string(), path.filename().string())) continue;
-    const int file = ::open(entry.path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  for (const std::string& left_over : temporariesIn(path.parent_path(), path.filename().string() + kMark)) {
+    const int file = ::open(left_over.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) continue;
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(left_over.c_str());
     ::close(file);
   }
 }
@@ -64,7 +45,9 @@ void syncFolder(const fs::path& folder) {
 }  // namespace
 
 std::string absolutePath(const std::string& path) {
-  return path.empty() ? path : fs::absolute(path).lexically_normal().string();
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  return error ? path : absolute.lexically_normal().string();
 }
 
 void OutputFile::fail() const {
@@ -82,7 +65,7 @@ OutputFile::OutputFile(const std::string& path) : path_(absolutePath(path)) {
     throw InputError("cannot write '" + path_ + "': '" + folder.string() + "': " + reason);
   }
   removeLeftOvers(path_);
-  temporary_ = path_ + randomSuffix();
+  temporary_ = path_ + kMark + randomDigits();
   file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file_ < 0) fail();
   ::flock(file_, LOCK_EX | LOCK_NB);

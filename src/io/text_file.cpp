@@ -11,6 +11,7 @@
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/text.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/output_file.h"
 
 namespace semantic_mht_slam {
@@ -24,7 +25,7 @@ namespace {
 }  // namespace
 
 std::string readFile(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw InputError("cannot read '" + path + "': it is a folder");
+  if (isFolder(path)) throw InputError("cannot read '" + path + "': it is a folder");
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) fail("cannot read", path);
@@ -73,7 +74,7 @@ void prepareOutputFolder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error) throw InputError("cannot create folder '" + path + "': " + error.message());
-  if (!std::filesystem::is_directory(path)) throw InputError("cannot write to '" + path + "': it is not a folder");
+  if (!isFolder(path)) throw InputError("cannot write to '" + path + "': it is not a folder");
   if (::access(path.c_str(), W_OK | X_OK) != 0) fail("cannot write to folder", path);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>
@@ -105,8 +106,10 @@ void describe(SegmentationConfig& config, Fields& fields) {
 
 SegmentationNetwork::SegmentationNetwork(const SegmentationConfig& config)
     : config_(config), network_(std::make_unique<Network>()) {
-  if (!std::filesystem::is_regular_file(config.model)) {
-    throw InputError("cannot read the network '" + config.model + "': no such file");
+  std::error_code look_error;
+  if (!std::filesystem::is_regular_file(config.model, look_error)) {
+    throw InputError("cannot read the network '" + config.model + "': no such file" +
+                     (look_error ? " (" + look_error.message() + ")" : ""));
   }
   try {
     network_->net = cv::dnn::readNetFromONNX(config.model);

@@ -7,6 +7,7 @@
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/stopwatch.h"
+#include "semantic_mht_slam/io/output_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
 #include "semantic_mht_slam/merging/map_merger.h"
@@ -87,7 +88,7 @@ int run(int argc, char** argv) {
                                        [](const std::string& step) { std::fprintf(stderr, "%s\n", step.c_str()); });
   const double seconds = watch.elapsed_s();
 
-  const std::filesystem::path folder = std::filesystem::absolute(arguments.output).parent_path();
+  const std::filesystem::path folder = std::filesystem::path(absolutePath(arguments.output)).parent_path();
   prepareOutputFolder(folder.string());
   const JoinedMap& joined = *result.groups.front().joined;
   const MergeSettings settings = mergeSettings(inputs.maps, inputs.slam_config, inputs.classes);

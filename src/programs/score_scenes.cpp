@@ -13,6 +13,7 @@
 #include "semantic_mht_slam/io/calibration_file.h"
 #include "semantic_mht_slam/io/csv_file.h"
 #include "semantic_mht_slam/io/dataset.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
@@ -77,7 +78,7 @@ po::options_description makeOptions(Arguments& arguments) {
 /// A file of the data set, or of the current folder.
 std::string locate(const std::string& folder, const std::string& file) {
   const fs::path inside = fs::path(folder) / file;
-  return fs::exists(inside) ? inside.string() : file;
+  return mayExist(inside.string()) ? inside.string() : file;
 }
 
 using FramePairs = std::vector<std::pair<std::size_t, std::size_t>>;

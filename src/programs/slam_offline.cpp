@@ -13,6 +13,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/dataset.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/staged_folder.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/map_file.h"
@@ -72,8 +73,7 @@ po::options_description makeOptions(Arguments& arguments) {
 
 /// A file of that name, else the package's own one.
 std::string locateConfig(const std::string& name) {
-  return !std::filesystem::exists(name) && std::filesystem::exists(packageConfigFile(name)) ? packageConfigFile(name)
-                                                                                            : name;
+  return !mayExist(name) && mayExist(packageConfigFile(name)) ? packageConfigFile(name) : name;
 }
 
 void requireInputAndOutput(const Arguments& arguments) {

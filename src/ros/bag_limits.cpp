@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <string_view>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/existing_path.h"
 
 // The format: http://wiki.ros.org/Bags/Format/2.0
 namespace semantic_mht_slam {
@@ -53,7 +53,7 @@ std::uint64_t mostMemory(std::uint64_t file_size) {
 }
 
 void requireModestBag(const std::string& path) {
-  const std::uint64_t size = std::filesystem::file_size(path);
+  const std::uint64_t size = sizeOfFile(path);
   std::ifstream file(path, std::ios::binary);
   std::string magic(kMagic.size(), ' ');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));

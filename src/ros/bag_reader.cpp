@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -11,6 +10,8 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/text.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/objects_gate.h"
@@ -153,7 +154,8 @@ class BagReader {
     if (usable.size() > 1 && toStamp(usable.front().header.stamp) < *latest_) beginAgain();
     for (const nav_msgs::Odometry& sample : usable) {
       const StampedPose T_odom_base{toStamp(sample.header.stamp), fromMessage(sample.pose.pose)};
-      recording_.odometry.push_back({T_odom_base.stamp - time_origin_, T_odom_base.T_world_base});
+      recording_.odometry.push_back(
+          {sinceOrigin(T_odom_base.stamp, recording_.names.odometry), T_odom_base.T_world_base});
       sensors_.addOdometry(T_odom_base);
       if (T_odom_base.T_world_base.isValid()) latest_ = std::max(latest_.value_or(0), T_odom_base.stamp);
     }
@@ -170,9 +172,17 @@ class BagReader {
     latest_.reset();
   }
 
+  /// A stamp as the recording has it, which is no ROS time if it is negative.
+  Stamp sinceOrigin(Stamp stamp, const std::string& topic) const {
+    require(stamp >= time_origin_, "topic " + layout_.time_origin_topic + " says " +
+                                       formatFixed(secondsFromStamp(time_origin_), 3) + " s, which is later than " +
+                                       topic + ", stamped " + formatFixed(secondsFromStamp(stamp), 3) + " s");
+    return stamp - time_origin_;
+  }
+
   void takeObjects() {
     while (auto frame = objects_gate_.next(odometry_gate_, latest_, now_s_, recording_.refused)) {
-      frame->stamp -= time_origin_;
+      frame->stamp = sinceOrigin(frame->stamp, recording_.names.objects);
       frame->odometry_before = recording_.odometry.size();
       recording_.detector_frames.push_back(std::move(*frame));
     }
@@ -195,8 +205,7 @@ class BagReader {
 
 Recording readBag(const std::string& path, const ClassTable& classes, const NodeConfig& frames,
                   const BagLayout& layout) {
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError("cannot read '" + path + "': no such file, or no regular one");
+  static_cast<void>(sizeOfFile(path));  // refuses what is no file, with the system's reason
   return BagReader(path, classes, frames, layout).read();
 }
 

@@ -14,7 +14,9 @@ Pose fromParts(double x, double y, double z, const geometry_msgs::Quaternion& q)
 Detection fromObject(const SemanticObject& object, ClassIndex class_index, const Pose& T_base_sensor) {
   Detection detection;
   detection.class_index = class_index;
-  detection.position_m = T_base_sensor * Eigen::Vector3d(object.position.x, object.position.y, object.position.z);
+  const Eigen::Vector3d position_m(object.position.x, object.position.y, object.position.z);
+  // What a sensor puts where it has no range of something is not to look like an object where the sensor is.
+  detection.position_m = position_m.isZero(0.0) ? position_m : T_base_sensor * position_m;
   if (object.score != -1.0) detection.score = object.score;
   const Eigen::Matrix3d cov = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(object.covariance.data());
   if (!cov.isZero(0.0)) {

@@ -142,7 +142,9 @@ std::optional<Prescription> firstProblem(const SystemObservation& system) {
 std::vector<std::string> notesOf(const SystemObservation& system) {
   std::vector<std::string> notes;
   for (const DiagnosticStatus& status : system.diagnostics) {
-    if (std::string note = valueOf(status, kNoteKey); !note.empty()) notes.push_back(std::move(note));
+    for (const diagnostic_msgs::KeyValue& value : status.values) {
+      if (value.key == kNoteKey) notes.push_back(value.value);
+    }
   }
   return notes;
 }

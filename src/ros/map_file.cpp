@@ -11,6 +11,7 @@
 #include <semantic_mht_slam/MapSection.h>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/output_file.h"
 #include "semantic_mht_slam/ros/atomic_bag.h"
 #include "semantic_mht_slam/ros/bag_limits.h"
@@ -119,7 +120,7 @@ class MapReader {
  public:
   MapReader(const std::string& path, const SystemConfig& config, const ClassTable& classes,
             const KeepReading& keep_reading)
-      : path_(path), config_(config), classes_(classes), keep_reading_(keep_reading) {}
+      : path_(path), size_(sizeOfFile(path)), config_(config), classes_(classes), keep_reading_(keep_reading) {}
 
   LoadedMap read() {
     try {
@@ -185,9 +186,9 @@ class MapReader {
     map.landmarks = header.landmarks;
     map.has_same_parameters = header.config == parametersOf(config_.slam);
     map.state.source = path_;
-    map.state.most_memory = mostMemory(std::filesystem::file_size(path_));
+    map.state.most_memory = mostMemory(size_);
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));
-    std::uint64_t left = mostContent(std::filesystem::file_size(path_));
+    std::uint64_t left = mostContent(size_);
     for (const rosbag::MessageInstance& instance : view) {
       require(instance.size() <= kPiece + kBesidePiece, "a piece of a section is larger than any there is");
       const auto section = instantiate<MapSection>(instance);
@@ -208,18 +209,30 @@ class MapReader {
   }
 
   const std::string& path_;
+  const std::uint64_t size_;
   const SystemConfig& config_;
   const ClassTable& classes_;
   const KeepReading& keep_reading_;
 };
+
+/// Whether a bag says that it is a map, of whatever version: messages on the header's topic, all of its type.
+bool hasMapHeader(const rosbag::Bag& bag) {
+  rosbag::View view(bag, rosbag::TopicQuery(kHeaderTopic));
+  const std::vector<const rosbag::ConnectionInfo*> connections = view.getConnections();
+  return view.size() > 0 && std::all_of(connections.begin(), connections.end(), [](const rosbag::ConnectionInfo* one) {
+           return one->datatype == ros::message_traits::datatype<MapHeader>();
+         });
+}
 
 /// What is no map file is somebody's, and is not replaced by one. An empty file holds nothing.
 void requireMapOrNothing(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
   try {
-    rosbag::Bag bag(path, rosbag::bagmode::Read);
-    if (rosbag::View(bag, rosbag::TopicQuery(kHeaderTopic)).size() > 0) return;
+    requireModestBag(path);
+    const rosbag::Bag bag(path, rosbag::bagmode::Read);
+    if (hasMapHeader(bag)) return;
+  } catch (const InputError&) {  // no bag, or one that would take the memory
   } catch (const rosbag::BagException&) {
   }
   throw InputError("cannot write '" + absolutePath(path) + "': a file that is no map is there, and stays");
@@ -255,9 +268,6 @@ std::size_t writeMapFile(const std::string& path, const SavedMap& map, const Sys
 
 LoadedMap readMapFile(const std::string& path, const SystemConfig& config, const ClassTable& classes,
                       const KeepReading& keep_reading) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError("cannot read '" + path + "': no such file, or no regular one");
-  }
   return MapReader(path, config, classes, keep_reading).read();
 }
 

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/io/output_file.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -29,12 +30,21 @@ fs::path resolved(const fs::path& path) {
   return result.has_filename() ? result : result.parent_path();  // without a slash at the end
 }
 
+/// A path is text: a zero byte would end it early, and others would break the lines of whatever shows it.
+void requirePrintable(const std::string& path) {
+  const auto bad = std::find_if(path.begin(), path.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+  if (bad == path.end()) return;
+  throw InputError("the path holds the control character " + std::to_string(static_cast<unsigned char>(*bad)) +
+                   ", after '" + std::string(path.begin(), bad) + "'");
+}
+
 /// The asked path, absolute, if it is inside of `map_folder`.
 fs::path insidePath(const std::string& asked, const std::string& map_folder) {
   if (asked.empty()) throw InputError("the path is empty");
+  requirePrintable(asked);
   const fs::path folder = withHome(map_folder);
   const fs::path given = withHome(asked);
-  const fs::path path = fs::absolute(given.is_absolute() ? given : folder / given).lexically_normal();
+  const fs::path path = absolutePath((given.is_absolute() ? given : folder / given).string());
   if (folder.empty()) return path;
   const fs::path inside = resolved(path);
   const fs::path root = resolved(folder);
@@ -55,6 +65,7 @@ std::string mapPath(const std::string& asked, const std::string& map_folder) {
 
 std::string resultsPath(const std::string& asked, const std::string& map_folder) {
   const fs::path path = insidePath(asked, map_folder);
+  if (path == path.root_path()) throw InputError("'" + path.string() + "' is the root of the file system");
   return (path.has_filename() ? path : path.parent_path()).string();
 }
 

@@ -10,8 +10,8 @@
 namespace semantic_mht_slam {
 
 /// Writes trajectory.tum, trajectory.txt, landmarks.csv and landmarks.geojson (see srv/SaveResults.srv) to a folder,
-/// all or none. Throws InputError, and leaves everything as it was, if it cannot be written or has one of these files
-/// but not all: then that one is somebody's.
+/// all or none: one that there is not, that is empty, or that holds all of these files. Throws InputError, and leaves
+/// everything as it was, if it holds something else without them, which is somebody's, or cannot be written to.
 void saveResults(const std::string& folder, const std::vector<StampedPose>& T_map_base,
                  const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes,
                  const std::optional<MapOrigin>& origin);

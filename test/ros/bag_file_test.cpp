@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <std_msgs/String.h>
+#include <std_msgs/Time.h>
 
 #include "semantic_mht_slam/app/offline_runner.h"
 #include "semantic_mht_slam/app/result_files.h"
@@ -100,6 +101,20 @@ TEST_F(BagFileTest, BagsWithoutWhatIsNeededAreRefusedByTopic) {
   expectRefused({"no messages on /objects", "/odometry (nav_msgs/Odometry)", "/tf_static (tf2_msgs/TFMessage)"});
 }
 
+TEST_F(BagFileTest, AnOriginOfTimeBeyondTheStampsIsRefusedByTopic) {
+  const Recording recording = makeCircleRecording(5);
+  write(recording);
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Append);
+    std_msgs::Time origin;
+    origin.data = ros::Time(4000.0);
+    bag.write("/time_origin", ros::Time(2.0), origin);
+  }
+  expectRefused({"drive.bag", "topic /time_origin says 4000.000 s", "later than /o", "stamped 1.0"});
+  writeBag(path_, recording, classes_, {}, {}, recording.odometry.front().stamp + kOrigin);
+  EXPECT_EQ(readBag(path_, classes_, {}, {}).odometry.size(), 5U) << "right at the first stamp";
+}
+
 TEST_F(BagFileTest, ObjectsOfASensorAreMovedToTheBaseFrame) {
   const Pose T_base_lidar{expRotation({0.0, 0.0, M_PI / 2.0}), {1.0, 0.0, 0.5}};
   Detection detection;
@@ -111,6 +126,9 @@ TEST_F(BagFileTest, ObjectsOfASensorAreMovedToTheBaseFrame) {
   EXPECT_LT((moved[0].position_m - Eigen::Vector3d(1.0, 2.0, 0.5)).norm(), 1e-12);
   EXPECT_LT((moved[0].cov_m2->diagonal() - Eigen::Vector3d(0.01, 0.04, 0.09)).norm(), 1e-12);
   EXPECT_EQ(unknown, 0U);
+  const SemanticObjectArray empty = toMessage(kOrigin, "lidar", {Detection{}}, classes_);
+  EXPECT_TRUE(fromMessage(empty, classes_, T_base_lidar, unknown)[0].position_m.isZero(0.0))
+      << "a position that was left empty is no object where the sensor is";
 }
 
 TEST_F(BagFileTest, UnwritablePlacesLeaveNothingBehind) {

@@ -53,6 +53,14 @@ class MapFileTest : public testing::Test {
     return path;
   }
 
+  /// Content of the file, whose first chunk claims to hold 4 GB.
+  std::string withLargeChunk() const {
+    std::string content = readFile(path_);
+    const std::size_t size = content.find("size=", content.find("compression=bz2"));
+    EXPECT_NE(size, std::string::npos);
+    return size == std::string::npos ? content : content.replace(size + 5, 4, "\x00\x00\x00\xF0", 4);
+  }
+
   TemporaryFolder folder_;
   std::string path_ = folder_ / "map.bag";
   SystemConfig config_;
@@ -195,12 +203,9 @@ TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
 }
 
 TEST_F(MapFileTest, AChunkThatClaimsMoreThanThereCanBeIsRefusedBeforeMemoryIsTaken) {
-  std::string content = readFile(path_);
-  const std::size_t size = content.find("size=", content.find("compression=bz2"));
-  ASSERT_NE(size, std::string::npos);
-  content.replace(size + 5, 4, "\x00\x00\x00\xF0", 4);
-  writeFileAtomically(path_, content);
-  expectInputError([&] { read(path_); }, {path_, "a chunk claims more"});
+  const std::string hungry = folder_ / "hungry.bag";
+  writeFileAtomically(hungry, withLargeChunk());
+  expectInputError([&] { read(hungry); }, {hungry, "a chunk claims more"});
 }
 
 TEST_F(MapFileTest, SectionsOfMoreBytesThanThereCanBeAreRefused) {
@@ -234,6 +239,14 @@ TEST_F(MapFileTest, OnlyMapsAreReplaced) {
     bag.write("/time_origin", ros::Time(1.0), std_msgs::Time());
   }
   expectInputError([&] { writeMapFile(other, map_, config_, classes_); }, {other, "no map is there, and stays"});
+  {
+    rosbag::Bag bag(other, rosbag::bagmode::Write);
+    bag.write("/map_header", ros::Time(1.0), std_msgs::Time());
+  }
+  expectInputError([&] { writeMapFile(other, map_, config_, classes_); }, {other, "no map is there, and stays"});
+  const std::string hungry = folder_ / "hungry.bag";
+  writeFileAtomically(hungry, withLargeChunk());
+  expectInputError([&] { writeMapFile(hungry, map_, config_, classes_); }, {hungry, "no map is there, and stays"});
   writeFileAtomically(other, "");
   for (const std::string& path : {other, path_}) {
     const std::size_t bytes = writeMapFile(path, map_, config_, classes_);

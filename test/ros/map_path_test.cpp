@@ -27,6 +27,26 @@ TEST(MapPathTest, HomeAndRelativePathsBecomeAbsolute) {
   expectInputError([] { mapPath("/data/", ""); }, {"/data/", "folder"});
 }
 
+TEST(MapPathTest, PathsWithControlCharactersAreRefused) {
+  for (const std::string& end :
+       {std::string("\0.txt", 5), std::string("\n"), std::string("\x1B[2J"), std::string("\x7F")}) {
+    const std::string code = std::to_string(static_cast<unsigned char>(end.front()));
+    for (const auto& pathOf : {mapPath, resultsPath}) {
+      expectInputError([&] { pathOf("/data/town" + end + "x", ""); }, {"control character " + code, "'/data/town'"});
+    }
+  }
+  EXPECT_EQ(mapPath("/data/Zürich 1.bag", ""), "/data/Zürich 1.bag");
+}
+
+TEST(MapPathTest, ResultsGoToAFolderThatIsNotTheRoot) {
+  EXPECT_EQ(resultsPath("/data/town/", ""), "/data/town");
+  EXPECT_EQ(resultsPath("town", "/data/maps"), "/data/maps/town");
+  for (const std::string path : {"/", "//", "/data/..", "/./"}) {
+    expectInputError([&] { resultsPath(path, ""); }, {"is the root of the file system"});
+  }
+  expectInputError([] { resultsPath("/tmp/town", "/data/maps"); }, {"is outside of '/data/maps' (node/map_folder)"});
+}
+
 TEST(MapPathTest, OutsideOfTheFolderNothingIsReached) {
   const TemporaryFolder folder;
   const std::string maps = folder / "maps";

@@ -25,6 +25,18 @@ struct RefusedInput {
   std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
 };
 
+/// Class ids that the table lacks, as far as they are listed: whoever sends garbage sends many.
+struct UnknownClassList {
+  std::map<int, std::size_t> listed;  ///< class id -> objects dropped; the ten ids of most objects
+  std::size_t others = 0;             ///< ids beside them
+  std::size_t objects_of_others = 0;  ///< dropped
+
+  /// "class id 7", "class ids 7, 99 and 3 more"; empty if there are none.
+  std::string text() const;
+};
+
+UnknownClassList listOf(const std::map<int, std::size_t>& unknown_classes);
+
 /// Names of the input in messages to the user: topics or files, and the robot's frame.
 struct InputNames {
   std::string odometry = "odometry";
@@ -32,7 +44,8 @@ struct InputNames {
   std::string base_frame = "base_link";
 };
 
-/// What was dropped of the two inputs so far, a line for each cause: the input, how many, and why.
+/// What was dropped of the two inputs so far, a line for each cause: the input, how many, and why. Unknown classes have
+/// a line each, as far as they are listed, and one for all others.
 std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
                                       const InputNames& names);
 

@@ -48,8 +48,9 @@ nav_msgs::Path toPath(const std::vector<StampedPose>& T_map_base, const std::str
 SemanticObjectArray toMessage(Stamp stamp, const std::string& sensor_frame, const Detections& detections,
                               const ClassTable& classes);
 
-/// Detections of a message in the base frame. Extents stay along the sensor's axes. Objects whose class id the table
-/// lacks are left out and counted in `unknown_classes`; `row` keeps the place in the message.
+/// Detections of a message in the base frame; 0, 0, 0 of the sensor, which is no place, stays 0, 0, 0. Extents stay
+/// along the sensor's axes. Objects whose class id the table lacks are left out and counted in `unknown_classes`; `row`
+/// keeps the place in the message.
 Detections fromMessage(const SemanticObjectArray& message, const ClassTable& classes, const Pose& T_base_sensor,
                        std::size_t& unknown_classes);
 
