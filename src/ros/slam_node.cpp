@@ -192,6 +192,7 @@ std::optional<Stamp> SlamNode::latestStamp() const {
 void SlamNode::startAgain() {
   slam_ = std::make_unique<Slam>(config_.slam, classes_);
   publisher_.startAgain(*slam_);
+  plausibility_.clear();
   published_odometry_ = 0;
   is_localization_wanted_ = false;
   input_failures_.forgetRow();
