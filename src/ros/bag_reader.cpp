@@ -182,7 +182,7 @@ class BagReader {
 
   void takeObjects() {
     while (auto frame = objects_gate_.next(odometry_gate_, latest_, now_s_, recording_.refused)) {
-      frame->stamp = sinceOrigin(frame->stamp, recording_.names.objects);
+      frame->stamp -= time_origin_;  // before it: dropped and counted, as every stamp that is none
       frame->odometry_before = recording_.odometry.size();
       recording_.detector_frames.push_back(std::move(*frame));
     }
