@@ -154,8 +154,10 @@ TEST_F(HostileMapFileTest, ShortFilesThatMakeMuchAreRefusedBeforeMemoryIsTaken) 
   expectRefusedCheaply("graph", graph.bytes());
 
   StateArchive zeros;  // matrices of which three bytes are left
-  std::vector<Eigen::MatrixXd> matrices(200, Eigen::MatrixXd::Zero(2000, 2000));
-  zeros(matrices);
+  constexpr int kMatrices = 200;
+  zeros.count<Eigen::MatrixXd>(kMatrices);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2000, 2000);
+  for (int i = 0; i < kMatrices; ++i) zeros(matrix);
   expectRefusedCheaply("submaps", zeros.written());
 
   SlamState state = good_->state;

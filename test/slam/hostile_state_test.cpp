@@ -35,16 +35,21 @@ void useFor(Slam& slam, const SquareDrive& drive, int frames) {
 
 class HostileStateTest : public testing::TestWithParam<int> {
  protected:
-  HostileStateTest() : drive_(7) {
-    Slam slam(config_, classes_);
-    drive_.feed(slam, 0, kDriven);
-    state_ = slam.snapshot();
-  }
-
   const SlamConfig config_ = defaultsOf(Method::kDpmhm);
   const ClassTable classes_ = makeStreetClasses();
-  SquareDrive drive_;
-  SlamState state_;
+  const SquareDrive drive_{7};
+  const SlamState& state_ = stateOfTheDrive(config_, classes_, drive_);
+
+ private:
+  static const SlamState& stateOfTheDrive(const SlamConfig& config, const ClassTable& classes,
+                                          const SquareDrive& drive) {
+    static const SlamState state = [&] {
+      Slam slam(config, classes);
+      drive.feed(slam, 0, kDriven);
+      return slam.snapshot();
+    }();
+    return state;
+  }
 };
 
 /// How many states are tried; more by SMHT_HOSTILE_STATES.
