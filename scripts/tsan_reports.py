@@ -17,11 +17,12 @@ ACCESS = re.compile(r"^ *(WARNING|Read|Write|Previous|Atomic|Mutex M\d+ acquired
 
 
 def accesses(report):
-    """The frames of each access, the innermost first."""
-    for part in report.split("\n\n"):
-        frames = re.findall(r"#\d+ (.*)", part)
-        if frames and ACCESS.match(part.lstrip("\n")):
-            yield frames
+    """The frames of each access, the innermost first; where they were not kept, those of who made what was accessed."""
+    parts = [(part.strip(), re.findall(r"#\d+ (.*)", part)) for part in report.split("\n\n")]
+    made = [frames for part, frames in parts if part.startswith("Location is heap block")]
+    for part, frames in parts:
+        if ACCESS.match(part) and (frames or made):
+            yield frames or made[0]
 
 
 def is_own(frames):

@@ -89,11 +89,15 @@ bool isSequence(const cv::FileNode& node, std::size_t size) {
   return node.isSeq() && node.size() == size;
 }
 
-// What OpenCV looks up while it reads a tree, without asking whether it is there: the kinds of its variables, all of
-// them numbers (0), the label's last, and which variable each split looks at.
+bool isInteger(const cv::FileNode& node, int value) {
+  return node.isInt() && static_cast<int>(node) == value;
+}
+
+// What OpenCV looks up while it reads a tree, without asking whether it is there: how many variables it has, their
+// kinds, all of them numbers (0), the label's last, and which variable each split looks at.
 void requireVariables(const cv::FileNode& tree, const std::string& path) {
   constexpr std::size_t kVariables = kFeatures + 1;
-  const auto isNumber = [](const cv::FileNode& kind) { return kind.isInt() && static_cast<int>(kind) == 0; };
+  const auto isNumber = [](const cv::FileNode& kind) { return isInteger(kind, 0); };
   const auto isFeature = [](const cv::FileNode& split) {
     const cv::FileNode variable = split["var"];
     return variable.isInt() && static_cast<int>(variable) >= 0 && static_cast<int>(variable) < kFeatures;
@@ -102,8 +106,10 @@ void requireVariables(const cv::FileNode& tree, const std::string& path) {
     return node.isMap() && (node["splits"].empty() || areAll(node["splits"], isFeature));
   };
   const cv::FileNode kinds = tree["var_type"];
-  const bool is_usable = tree.isMap() && isSequence(kinds, kVariables) && areAll(kinds, isNumber) &&
-                         isSequence(tree["var_idx"], kFeatures) && areAll(tree["nodes"], areSplitsUsable);
+  const bool is_usable =
+      tree.isMap() && isInteger(tree["is_classifier"], 0) && isInteger(tree["var_all"], kVariables) &&
+      isInteger(tree["var_count"], kFeatures) && isInteger(tree["cat_var_count"], 0) && isSequence(kinds, kVariables) &&
+      areAll(kinds, isNumber) && isSequence(tree["var_idx"], kFeatures) && areAll(tree["nodes"], areSplitsUsable);
   if (!is_usable) throw InputError(path + ": the decision tree in it is damaged");
 }
 

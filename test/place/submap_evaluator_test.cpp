@@ -113,6 +113,9 @@ TEST(SubmapClassifierTest, FilesWithOtherFeaturesNumbersOrTreesAreRefused) {
   expectRefused("var:", "var: 7", "");
   expectRefused("value: ", "value: 3", "damaged");
   expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: [ ]", "damaged");
+  expectRefused("var_all: 4", "var_all: 2147483647", "damaged");
+  expectRefused("var_count: 3", "count: 3", "damaged");
+  expectRefused("is_classifier: 0", "is_classifier: 1", "damaged");
   expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: [ 0, 0, 0, 1 ]", "damaged");
   expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: 5", "damaged");
   expectRefused("var:", "var:9, other:", "damaged");
