@@ -1,5 +1,6 @@
 """Every command of README and docs: what needs files alone is run, launch files are resolved, service calls are made into
-requests, and of the rest the program and its options are looked up."""
+requests, and of the rest the program and its options are looked up. Launches and service calls are run on a running
+system by test/ros/document_commands_rostest.py."""
 import os
 import re
 import shlex

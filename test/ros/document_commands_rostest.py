@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""The commands of README and docs that need a running system, run as they are written but for what stands for a user's own:
+names, files and ids."""
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import rospy
+import rostest
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from semantic_mht_slam.msg import SemanticMap
+from semantic_mht_slam.srv import GetLandmarks
+
+WAIT_S = 60.0
+STAYS_S = 3.0  # a launch or node that runs for so long has begun
+PACKAGE = "semantic_mht_slam"
+REPOSITORY = Path(__file__).resolve().parents[2]
+DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+
+
+def lines(begin):
+    """The lines of shell blocks that begin so, each once, without comments."""
+    found = []
+    for document in DOCUMENTS:
+        for block in re.findall(r"```(?:sh|bash)\n(.*?)```", document.read_text(encoding="utf-8"), re.DOTALL):
+            for line in block.replace("\\\n", " ").splitlines():
+                line = re.sub(r"\s+#.*", "", line).strip()
+                if re.match(begin, line) and line not in found:
+                    found.append(line)
+    return found
+
+
+class DocumentCommandsTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.environment = dict(os.environ, HOME=self.folder, ROS_HOME=os.path.join(self.folder, "ros"), PWD=self.folder)
+        rospy.set_param("/use_sim_time", True)
+        os.symlink(REPOSITORY / "config", os.path.join(self.folder, "config"))
+        self.run_line(f"rosrun {PACKAGE} simulate_drive --scenario config/scenarios/town.yaml --seed 1 "
+                      "--set route.length=150 --output drive")
+        self.bag = os.path.join(self.folder, "drive", "drive.bag")
+        shutil.copy(self.bag, os.path.join(self.folder, "kitti_00.bag"))
+
+    def own(self, line):
+        """The line with names that there are here."""
+        names = {"/your/objects": "/objects", "/your/odometry": "/odometry", "rviz:=true": "rviz:=false",
+                 "/path/to/your_classes.yaml": str(REPOSITORY / "config/classes_semantic_kitti.yaml"),
+                 "/path/to/map.bag": os.path.join(self.folder, "map.bag"),
+                 "/data/town.bag": os.path.join(self.folder, "map.bag"), "/tmp/town": os.path.join(self.folder, "town")}
+        for name, own in names.items():
+            line = line.replace(name, own)
+        return line
+
+    def one(self, begin):
+        """README's line that begins so."""
+        self.assertGreaterEqual(len(lines(begin)), 1, begin)
+        return self.own(lines(begin)[0])
+
+    def run_line(self, line):
+        run = subprocess.run(["bash", "-c", line], cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
+                             stderr=subprocess.STDOUT, text=True, check=False, timeout=WAIT_S)
+        self.assertEqual(run.returncode, 0, line + "\n" + run.stdout)
+        return run.stdout
+
+    def start(self, line, output=subprocess.DEVNULL):
+        started = subprocess.Popen(["bash", "-c", line], cwd=self.folder, env=self.environment, stdout=output,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        self.addCleanup(self.end, started)
+        return started
+
+    @staticmethod
+    def end(started):
+        if started.poll() is None:
+            os.killpg(started.pid, signal.SIGINT)
+            started.wait(WAIT_S)
+
+    def play(self, topic, message):
+        """Plays the drive and returns the first message."""
+        player = self.start(f"rosbag play --quiet --clock --rate 3 --delay 1 {self.bag} < /dev/null")
+        try:
+            return rospy.wait_for_message(topic, message, WAIT_S)
+        finally:
+            self.assertEqual(player.wait(WAIT_S), 0)
+
+    def begin(self, begin):
+        """Launches README's line, and waits until the node is there."""
+        launch = self.start(self.one(begin) + " rviz:=false")
+        rospy.wait_for_service("/save_results", WAIT_S)
+        return launch
+
+    def test_a_drive_is_mapped_looked_at_saved_and_found_again(self):
+        launch = self.begin(f"roslaunch {PACKAGE} slam.launch")
+        self.assertTrue(self.play("/map", SemanticMap).landmarks)
+        self.run_line(self.one(f"rosrun {PACKAGE} doctor"))
+        self.assertIn("success: True", self.run_line(self.one("rosservice call /save_results")))
+        shutil.copy(os.path.join(self.folder, "result", "trajectory.tum"), os.path.join(self.folder, "truth.tum"))
+        self.assertIn("se3", self.run_line(self.one(f"rosrun {PACKAGE} evaluate trajectory --truth truth.tum")))
+        self.assertIn("success: True", self.run_line(f"rosservice call /save_map '{{path: {self.folder}/map.bag}}'"))
+        self.end(launch)
+        self.begin(f"roslaunch {PACKAGE} localization.launch")
+        self.assertEqual(rospy.get_param("/slam_node/node/mode"), "localization")
+        self.assertEqual(self.play("/pose", PoseWithCovarianceStamped).header.frame_id, "map")
+
+    def test_every_service_call_does_what_it_says(self):
+        self.begin(f"roslaunch {PACKAGE} slam.launch")
+        self.play("/map", SemanticMap)
+        self.run_line("rosservice call /finish_submap")
+        ids = [landmark.id for landmark in rospy.ServiceProxy("/get_landmarks", GetLandmarks)().landmarks]
+        calls = lines("rosservice call")
+        self.assertGreater(len(calls), 8)
+        for call in calls:
+            call = self.own(call).replace("id: 17", f"id: {ids[0]}").replace("id: 21", f"id: {ids[1]}")
+            call = call.replace("secs: 90", "secs: 12").replace("match_stamp: {secs: 12", "match_stamp: {secs: 3")
+            with self.subTest(call=call):
+                said = self.run_line(call.replace("id: 4", "id: 0") if "remove_closure" in call else call)
+                self.assertIn("success: True", said)
+
+    def test_every_launch_file_begins_as_it_is_called(self):
+        shutil.copy(self.bag, os.path.join(self.folder, "map.bag"))
+        self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && cp result/map.bag map.bag")
+        launches = [line for line in lines(r"(ROS_NAMESPACE=\S+ )?roslaunch") if "model:=" not in line]
+        self.assertGreater(len(launches), 7)
+        for line in launches + lines(f"rosrun {PACKAGE} odometry_relay"):
+            line = self.own(line)
+            if "slam.launch" in line or "localization.launch" in line or "kitti.launch" in line:
+                line += " rviz:=false"
+            with self.subTest(line=line), tempfile.TemporaryFile("w+") as output:
+                launch = self.start(line, output)
+                time.sleep(STAYS_S)
+                self.assertIsNone(launch.poll())
+                self.end(launch)
+                output.seek(0)
+                self.assertNotRegex(output.read(), "process has died|REQUIRED process|Traceback|RLException")
+
+
+if __name__ == "__main__":
+    rospy.init_node("document_commands_rostest")
+    rostest.rosrun(PACKAGE, "document_commands", DocumentCommandsTest)
