@@ -1,5 +1,6 @@
 """Bag in, bag with objects (or with the map as another message) out."""
 import os
+import tempfile
 from collections import Counter
 
 import rosbag
@@ -33,12 +34,13 @@ class BagRelay:
         """Writes the output, whole or not at all."""
         if os.path.exists(self._output) and os.path.samefile(self._output, self._path):
             raise RelayError(f"{self._output}: the output is the input; name another file")
-        partial = f"{self._output}.tmp{os.getpid()}"
+        partial = None
         try:
             with rosbag.Bag(self._path) as source:
                 self._choose_topic(source)
                 if self._options.target_frame:
                     self._to_target = transforms.of_bag(source, self._options.target_frame)
+                partial = self._make_partial()
                 with rosbag.Bag(partial, "w") as made:
                     self._copy(source, made)
             self._check_result()
@@ -53,9 +55,19 @@ class BagRelay:
         except OSError as error:
             raise RelayError(f"{error.filename or self._output}: {error.strerror}") from error
         finally:
-            if os.path.exists(partial):
+            if partial is not None and os.path.exists(partial):
                 os.remove(partial)
         self._write_report()
+
+    def _make_partial(self):
+        """An empty file beside the output, of a name that nobody can guess, with the mode of a new file."""
+        folder, name = os.path.split(self._output)
+        handle, path = tempfile.mkstemp(prefix=name + ".tmp-", dir=folder or ".")
+        os.close(handle)
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(path, 0o666 & ~umask)
+        return path
 
     def _choose_topic(self, source):
         """The topic to relay: the one that was named, else the only one of a type that can be read."""
