@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 namespace semantic_mht_slam {
@@ -126,21 +127,23 @@ std::optional<Decimal> shortestDecimal(double value) {
 }
 
 std::string toText(const Decimal& decimal) {
-  std::string digits = std::to_string(decimal.digits);
-  digits.erase(digits.find_last_not_of('0') + 1);
+  std::array<char, 24> buffer{};
+  const char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), decimal.digits).ptr;
+  std::string_view digits(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+  digits = digits.substr(0, digits.find_last_not_of('0') + 1);
   const int exponent = decimal.exponent;
-  const auto count = static_cast<int>(digits.size());
-  std::string text = decimal.is_negative ? "-" : "";
+  std::string text(decimal.is_negative ? "-" : "");
+  text.reserve(buffer.size());
   if (exponent < -4 || exponent >= decimal.precision) {
-    text += digits.substr(0, 1);
-    if (count > 1) text += "." + digits.substr(1);
+    text += digits.front();
+    if (digits.size() > 1) text.append(".").append(digits.substr(1));
     const int size = std::abs(exponent);
-    return text + (exponent < 0 ? "e-" : "e+") + (size < 10 ? "0" : "") + std::to_string(size);
+    return text.append(exponent < 0 ? "e-" : "e+").append(size < 10 ? "0" : "").append(std::to_string(size));
   }
-  if (exponent < 0) return text + "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + digits;
+  if (exponent < 0) return text.append("0.").append(static_cast<std::size_t>(-exponent - 1), '0').append(digits);
   const auto whole = static_cast<std::size_t>(exponent) + 1;
-  if (digits.size() <= whole) return text + digits + std::string(whole - digits.size(), '0');
-  return text + digits.substr(0, whole) + "." + digits.substr(whole);
+  if (digits.size() <= whole) return text.append(digits).append(whole - digits.size(), '0');
+  return text.append(digits.substr(0, whole)).append(".").append(digits.substr(whole));
 }
 
 std::optional<double> parseShortDecimal(std::string_view text) {

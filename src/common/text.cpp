@@ -71,6 +71,7 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
 }
 
 std::string formatDouble(double value) {
+  if (value == 0.0) return std::signbit(value) ? "-0" : "0";
   if (const std::optional<Decimal> decimal = shortestDecimal(value)) return toText(*decimal);
   for (int digits = 15; digits < 17; ++digits) {
     std::string text = printNumber("%.*g", digits, value);
