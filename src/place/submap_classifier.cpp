@@ -16,6 +16,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr const char* kFormat = "semantic_mht_slam submap evaluator 1";
+constexpr const char* kBegin = "%YAML:1.0\n---\nformat: ";  // as OpenCV writes it
 constexpr int kFeatures = static_cast<int>(kSubmapFeatureNames.size());
 
 int ignoreError(int, const char*, const char*, const char*, int, void*) {
@@ -65,11 +66,13 @@ bool isUsable(const cv::ml::DTrees& tree) {
          });
 }
 
+[[noreturn]] void failOtherFormat(const std::string& path) {
+  throw InputError(path + ": not a tree of train_submap_evaluator (format '" + kFormat + "' was expected)");
+}
+
 void requireFormat(const cv::FileStorage& storage, const std::string& path) {
   const cv::FileNode format = storage["format"];
-  if (!format.isString() || format.string() != kFormat) {
-    throw InputError(path + ": not a tree of train_submap_evaluator (format '" + kFormat + "' was expected)");
-  }
+  if (!format.isString() || format.string() != kFormat) failOtherFormat(path);
   std::vector<std::string> names;
   storage["features"] >> names;
   if (!std::equal(names.begin(), names.end(), kSubmapFeatureNames.begin(), kSubmapFeatureNames.end())) {
@@ -155,6 +158,8 @@ SubmapClassifier SubmapClassifier::train(const std::vector<LabelledSubmap>& samp
 
 SubmapClassifier SubmapClassifier::load(const std::string& path) {
   const std::string content = contentOf(path);
+  // OpenCV reads for ever what stands further to the left than the first key.
+  if (content.rfind(kBegin, 0) != 0) failOtherFormat(path);
   const QuietOpenCv quiet;
   try {
     const cv::FileStorage storage(content, cv::FileStorage::READ | cv::FileStorage::MEMORY);

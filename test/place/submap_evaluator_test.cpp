@@ -86,6 +86,8 @@ TEST(SubmapClassifierTest, UnusableFilesGiveAnErrorThatNamesThem) {
                                         "key: value\n",
                                         "%YAML:1.0\n---\nkey: value\n",
                                         "%YAML:1.0\n---\n- 1\n- 2\n",
+                                        "%YAML:1.0\n---\n o:e\nd  -\nf\n",  // OpenCV would read it for ever
+                                        "%YAML:1.\n format: x\nd  -\nf",
                                         "{\"format\": 1}",
                                         good.substr(0, good.size() / 2),
                                         good.substr(0, good.find("tree:")),
