@@ -79,7 +79,14 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {
     const Stopwatch step_watch;
     const double mapping_before_s = slam.parts().mapping_s;
+    const std::optional<StampedPose> waits = slam.parts().unconfirmed;
+    const std::size_t outliers = slam.parts().assembler.counters().odometry_outliers;
     const bool is_used = slam.addOdometry(recording.odometry[i]);
+    if (is_used && waits && slam.parts().assembler.counters().odometry_outliers == outliers) {
+      // It begins the session, and has its row; where it is, nobody knew.
+      result.online_trajectory.push_back({waits->stamp, slam.T_map_odom() * waits->T_world_base});
+      result.online_trajectory_cov.push_back(unknownPoseCov());
+    }
     while (frame != recording.detector_frames.end() && isDue(*frame, i, recording)) {
       slam.addDetections(frame->stamp, frame->detections);
       ++frame;
