@@ -17,18 +17,25 @@ fi
 export SEMANTIC_MHT_SLAM_DATA=${SEMANTIC_MHT_SLAM_DATA:-}
 export ROS_LOG_DIR="$WORKSPACE/ros_logs"
 
-TARGETS=(run_tests)
 PREFIX='run_tests_semantic_mht_slam_(gtest|python|rostest_test_(ros|rviz_plugins))_'
-if [ $# -gt 0 ]; then
-  ALL=$(cmake --build "$WORKSPACE/build" --target help | sed -nE "s/^\.\.\. ($PREFIX.+)\$/\\1/p")
-  mapfile -t TARGETS < <(grep -E "^$PREFIX$1(\.test)?\$" <<<"$ALL")
-  if [ "${#TARGETS[@]}" -eq 0 ]; then
-    { echo "test: there is no test of the name '$1'; there are:"; sed -E "s/^$PREFIX//; s/\.test\$//" <<<"$ALL" | sort -u; } >&2
-    exit 1
-  fi
+ALL=$(cmake --build "$WORKSPACE/build" --target help | sed -nE "s/^\.\.\. ($PREFIX.+)\$/\1/p")
+mapfile -t TARGETS < <(grep -E "^$PREFIX${1:-.*}(\.test)?\$" <<<"$ALL")
+if [ "${#TARGETS[@]}" -eq 0 ]; then
+  { echo "test: there is no test of the name '${1:-}'; there are:"; sed -E "s/^$PREFIX//; s/\.test\$//" <<<"$ALL" | sort -u; } >&2
+  exit 1
 fi
 
-echo "test: running (output: $WORKSPACE/build/tests.log)"
-rm -rf "$WORKSPACE/build/test_results"
-cmake --build "$WORKSPACE/build" -- -j1 "${TARGETS[@]}" >"$WORKSPACE/build/tests.log" 2>&1
+# run_in_turn NAME TARGET...: its output is in tests_NAME.log
+run_in_turn() {
+  [ $# -eq 1 ] || cmake --build "$WORKSPACE/build" -- -j1 -k "${@:2}" >"$WORKSPACE/build/tests_$1.log" 2>&1
+}
+
+# A system of nodes mostly waits; the other tests compute meanwhile.
+echo "test: running (output: $WORKSPACE/build/tests_*.log)"
+rm -rf "$WORKSPACE/build/test_results" "$WORKSPACE"/build/tests_*.log
+mapfile -t SYSTEMS < <(printf '%s\n' "${TARGETS[@]}" | grep _rostest_)
+mapfile -t OTHERS < <(printf '%s\n' "${TARGETS[@]}" | grep -v _rostest_)
+run_in_turn systems "${SYSTEMS[@]}" &
+run_in_turn others "${OTHERS[@]}"
+wait
 exec python3 "$REPOSITORY/scripts/summarize_tests.py" "$WORKSPACE/build/test_results" "$REPOSITORY"

@@ -68,6 +68,21 @@ TEST(OfflineRunnerTest, ALongStandstillHasItsRowsThoughTheMapDoesNotKeepThem) {
   }
 }
 
+TEST(OfflineRunnerTest, EverySampleHasItsRowThoughTheOdometryWasSetToZero) {
+  Recording recording = makeCircleRecording(200);
+  const Pose T_before = recording.odometry[120].T_world_base;
+  for (std::size_t i = 120; i < 200; ++i) {
+    recording.odometry[i].T_world_base = T_before.inverse() * recording.odometry[i].T_world_base;
+  }
+  const RunResult result = runOffline(recording, SlamConfig{}, makeTwoClasses(), [](std::size_t, std::size_t) {});
+  EXPECT_EQ(result.sessions.size(), 2U);
+  ASSERT_EQ(result.online_trajectory.size(), 200U);
+  EXPECT_EQ(result.online_trajectory_cov.size(), 200U);
+  EXPECT_EQ(result.trajectory.size(), 200U);
+  EXPECT_EQ(result.trajectory_cov.size(), 200U);
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(result.online_trajectory[i].stamp, recording.odometry[i].stamp);
+}
+
 TEST(OfflineRunnerTest, ARecordingWithoutUsableOdometryIsRefused) {
   Recording recording = makeCircleRecording(3);
   for (StampedPose& pose : recording.odometry) pose.T_world_base.translation_m.x() = std::nan("");
