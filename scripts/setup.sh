@@ -76,7 +76,7 @@ say_progress() {
   local begin=$SECONDS
   while kill -0 "$make" 2>/dev/null; do
     sleep 1
-    percent=$(grep -oE '^\[ *[0-9]+%\]' "$log" | tail -n 1 | tr -dc '0-9')
+    percent=$(sed -nE 's/^\[ *([0-9]+)%\].*/\1/p' "$log" | tail -n 1)  # none at first
     if [ "${percent:-0}" -lt $((said + 10)) ] || [ $((SECONDS - begin)) -lt 10 ]; then continue; fi
     said=$percent
     echo "setup: $percent % built, about $(((SECONDS - begin) * (100 - percent) / percent / 60 + 1)) min left"
