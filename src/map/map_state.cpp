@@ -39,6 +39,7 @@ class SceneOfSubmap {
   void transfer(StateArchive& archive, std::vector<SceneObject>& objects) const {
     const std::size_t count = archive.count<SceneObject>(objects.size());
     if (archive.isReading()) objects.clear();
+    makeRoom(objects, count);
     LandmarkId last = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (archive.isReading()) objects.emplace_back();
@@ -117,6 +118,7 @@ void transfer(StateArchive& archive, MixtureLandmark& landmark) {
 void transferAssociations(StateArchive& archive, std::vector<DetectionAssociation>& associations) {
   const std::size_t count = archive.count<DetectionAssociation>(associations.size());
   if (archive.isReading()) associations.clear();
+  makeRoom(associations, count);
   DetectionAssociation last;
   for (std::size_t i = 0; i < count; ++i) {
     if (archive.isReading()) associations.emplace_back();

@@ -83,6 +83,7 @@ void transferLeaf(StateArchive& archive, const Landmarks& shared_landmarks, cons
                   "a hypothesis of a weight above one, or a negative count");
   const std::size_t count = archive.count<HypothesisLandmark>(landmarks.size());
   if (archive.isReading()) landmarks.clear();
+  makeRoom(landmarks, count);
   for (std::size_t i = 0; i < count; ++i) {
     if (archive.isReading()) landmarks.emplace_back();
     HypothesisLandmark& landmark = landmarks[i];

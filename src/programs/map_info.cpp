@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <boost/program_options.hpp>
@@ -67,8 +68,8 @@ MapContent readContent(const Arguments& arguments) {
   const std::string folder = std::filesystem::path(arguments.config).parent_path().string();
   MapContent content;
   content.classes = loadClassTable(config, folder);
-  const LoadedMap map = readMapFile(arguments.file, config, content.classes, [] { return true; });
-  content.slam = std::make_unique<Slam>(loadableSlamConfig(config, folder), content.classes, map.state);
+  LoadedMap map = readMapFile(arguments.file, config, content.classes, [] { return true; });
+  content.slam = std::make_unique<Slam>(loadableSlamConfig(config, folder), content.classes, std::move(map.state));
   content.landmarks = landmarksOf(*content.slam);
   content.trajectory = trajectoryOf(*content.slam);
   return content;

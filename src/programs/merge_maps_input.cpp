@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/text_file.h"
@@ -94,7 +95,7 @@ SlamParts makeLandmarkMap(const std::string& file, const std::vector<LandmarkLin
 
 std::unique_ptr<Slam> readEstimator(const std::string& file, const MapInputs& inputs) {
   LoadedMap map = readMapFile(file, inputs.config, inputs.classes, [] { return true; });
-  auto slam = std::make_unique<Slam>(inputs.slam_config, inputs.classes, map.state);
+  auto slam = std::make_unique<Slam>(inputs.slam_config, inputs.classes, std::move(map.state));
   const bool is_open = !slam->parts().waiting.empty() || (slam->parts().mapper && slam->parts().mapper->isOpen());
   if (is_open) slam->finish();
   return slam;

@@ -197,6 +197,7 @@ class MapReader {
       require(section->data.size() <= left, "section '" + section->name + "' holds more than there can be");
       left -= section->data.size();
       const bool goes_on = !map.state.sections.empty() && map.state.sections.back().name == section->name;
+      if (!goes_on && !map.state.sections.empty()) map.state.sections.back().bytes.shrink_to_fit();
       if (!goes_on) map.state.sections.push_back({section->name, static_cast<int>(section->version), {}});
       map.state.sections.back().bytes.append(section->data.begin(), section->data.end());
     }

@@ -163,9 +163,9 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
     const KeepReading keep_reading = [this] { return ros::ok() && !is_closing_; };
     try {
       const std::string path = mapPath(request.path, config_.node.map_folder);
-      const LoadedMap map = readMapFile(path, config_, classes_, keep_reading);
+      LoadedMap map = readMapFile(path, config_, classes_, keep_reading);
       has_same_parameters = map.has_same_parameters;
-      other = std::make_unique<Slam>(config_.slam, classes_, map.state, keep_reading);
+      other = std::make_unique<Slam>(config_.slam, classes_, std::move(map.state), keep_reading);
     } catch (const InputError& error) {
       response.message = std::string(error.what()) + "; the running map stays";
       return;

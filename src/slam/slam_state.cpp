@@ -130,9 +130,10 @@ constexpr Section kSections[] = {{"detector", 3, transferDetector}, {"input", 6,
                                  {"submaps", 4, transferSubmaps},   {"keyframes", 5, transferKeyframes},
                                  {"graph", 5, transferGraph},       {"hypotheses", 9, transferMapper}};
 
-/// The lengths follow the detector that the state was made with: `fitted` is `config` with these.
-void restore(const SlamState& state, const KeepReading& keep_reading, const SlamConfig& config,
-             const ClassTable& classes, SlamConfig& fitted, SlamParts& parts) {
+/// The lengths follow the detector that the state was made with: `fitted` is `config` with these. The bytes of a
+/// section go when it has been read.
+void restore(SlamState& state, const KeepReading& keep_reading, const SlamConfig& config, const ClassTable& classes,
+             SlamConfig& fitted, SlamParts& parts) {
   std::size_t memory = state.most_memory;
   for (const Section& section : kSections) {
     const auto found = std::find_if(state.sections.begin(), state.sections.end(),
@@ -147,6 +148,7 @@ void restore(const SlamState& state, const KeepReading& keep_reading, const Slam
       section.transfer(archive, fitted, parts);
       archive.requireEnd();
       memory = archive.memoryLeft();
+      std::string().swap(found->bytes);
     } catch (const std::exception& error) {
       throw InputError(std::string("section '") + section.name + "': " + error.what());
     }
@@ -172,7 +174,7 @@ SlamState Slam::snapshot() const {
   return stateOf(fitted_, parts_);
 }
 
-Slam::Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state, const KeepReading& keep_reading)
+Slam::Slam(const SlamConfig& config, const ClassTable& classes, SlamState state, const KeepReading& keep_reading)
     : Slam(config, classes) {
   try {
     restore(state, keep_reading, config_, classes_, fitted_, parts_);

@@ -188,7 +188,16 @@ void transfer(StateArchive& archive, std::optional<Value>& value) {
   if (has_value) archive(*value);
 }
 
-/// Elements one by one, so that a broken count cannot ask for more memory than there are bytes.
+/// `count` has looked whether there is the memory for that many.
+template <class Value>
+void makeRoom(std::vector<Value>& list, std::size_t count) {
+  list.reserve(count);
+}
+
+template <class Value>
+void makeRoom(std::deque<Value>& /*list*/, std::size_t /*count*/) {}
+
+/// Elements one by one, so that bytes that end too early are found at once.
 template <class List>
 void transferList(StateArchive& archive, List& list) {
   const std::size_t count = archive.count<typename List::value_type>(list.size());
@@ -197,6 +206,7 @@ void transferList(StateArchive& archive, List& list) {
     return;
   }
   list.clear();
+  makeRoom(list, count);
   for (std::size_t i = 0; i < count; ++i) archive(list.emplace_back());
 }
 

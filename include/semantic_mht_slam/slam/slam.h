@@ -114,10 +114,9 @@ class Slam {
 
   /// Goes on where `state` was taken. Parameters may differ from those that it was made with, but for the method, the
   /// class table and the sizes of the pose graph's chunks; with the same ones the result is the same to the last bit as
-  /// without the interruption. Throws InputError if the state is broken, newer or does not fit, or if reading is given
-  /// up.
-  Slam(const SlamConfig& config, const ClassTable& classes, const SlamState& state,
-       const KeepReading& keep_reading = {});
+  /// without the interruption; what has been read of the state is given up. Throws InputError if it is broken, newer
+  /// or does not fit, or if reading is given up.
+  Slam(const SlamConfig& config, const ClassTable& classes, SlamState state, const KeepReading& keep_reading = {});
 
   /// Everything that is needed to go on from here.
   SlamState snapshot() const;
