@@ -146,6 +146,22 @@ std::string toText(const Decimal& decimal) {
   return text.append(digits.substr(0, whole)).append(".").append(digits.substr(whole));
 }
 
+std::optional<std::string> toFixedText(double value, int decimals) {
+  const double size = std::abs(value);
+  if (decimals < 0 || !(size < 1e15)) return std::nullopt;
+  const auto number = size == 0.0 ? Scaled{0, true} : scaled(binaryOf(size), decimals);
+  if (!number) return std::nullopt;
+  std::array<char, 24> buffer{};
+  const char* const end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number->integer).ptr;
+  std::string text(value < 0.0 && number->integer > 0 ? "-" : "");
+  const auto digits = static_cast<std::size_t>(end - buffer.data());
+  const auto least = static_cast<std::size_t>(decimals) + 1;
+  if (digits < least) text.append(least - digits, '0');
+  text.append(buffer.data(), digits);
+  if (decimals > 0) text.insert(text.size() - least + 1, ".");
+  return text;
+}
+
 std::optional<double> parseShortDecimal(std::string_view text) {
   const bool is_negative = readSign(text);
   std::uint64_t number = 0;

@@ -81,6 +81,7 @@ std::string formatDouble(double value) {
 }
 
 std::string formatFixed(double value, int decimals) {
+  if (const auto fixed = toFixedText(value, decimals)) return *fixed;
   std::string text = printNumber("%.*f", decimals, value);
   if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
   return text;

@@ -74,6 +74,21 @@ TEST(TextTest, FixedNumbersHaveNoNegativeZero) {
   EXPECT_EQ(formatFixed(12.3456, 2), "12.35");
 }
 
+TEST(TextTest, FixedNumbersAreThoseOfTheCLibrary) {
+  Rng rng(5);
+  std::vector<double> values = {0.0, 0.5, 1.5, 0.125, 0.375, 0.0625, 1e-320, 1e-5, 999.9999999, 4e15, 1e22, 1e300};
+  for (int i = 0; i < 20000; ++i) values.push_back(rng.uniform(-1.0, 1.0) * std::pow(10.0, rng.uniform(-12.0, 16.0)));
+  for (int i = 0; i < 2000; ++i) values.push_back(std::ldexp(std::floor(rng.uniform(0.0, 5000.0)), -6));  // halves
+  for (const double value : values) {
+    for (const int decimals : {0, 1, 4, 8, 12}) {
+      char text[400];
+      std::snprintf(text, sizeof text, "%.*f", decimals, value);
+      const bool is_zero = std::string(text).find_first_of("123456789") == std::string::npos;
+      ASSERT_EQ(formatFixed(value, decimals), text + (is_zero && text[0] == '-' ? 1 : 0)) << value;
+    }
+  }
+}
+
 TEST(TextTest, SplitKeepsEmptyFieldsAndSplitBlanksDoesNot) {
   EXPECT_EQ(split("a, ,b,", ',').size(), 4U);
   EXPECT_EQ(split("a, ,b,", ',')[1], "");
