@@ -18,7 +18,7 @@ from semantic_mht_slam.msg import SemanticMap
 from semantic_mht_slam.srv import GetLandmarks
 
 WAIT_S = 60.0
-STAYS_S = 3.0  # a launch or node that runs for so long has begun
+STAYS_S = 3.0  # what a launch or node that has begun gets to end in
 PACKAGE = "semantic_mht_slam"
 REPOSITORY = Path(__file__).resolve().parents[2]
 DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
@@ -89,6 +89,12 @@ class DocumentCommandsTest(unittest.TestCase):
         finally:
             self.assertEqual(player.wait(WAIT_S), 0)
 
+    def wait_for(self, holds):
+        until = time.time() + WAIT_S
+        while not holds():
+            self.assertLess(time.time(), until)
+            time.sleep(0.1)
+
     def check_each(self, lines_to_check, check):
         """All of them, whatever the others do (a failed subTest is in no result file of a rostest)."""
         problems = []
@@ -144,13 +150,14 @@ class DocumentCommandsTest(unittest.TestCase):
             line = self.own(line)
             if "slam.launch" in line or "localization.launch" in line or "kitti.launch" in line:
                 line += " rviz:=false"
-            with tempfile.TemporaryFile("w+") as output:
+            with tempfile.NamedTemporaryFile("w+") as output:
                 launch = self.start(line, output)
+                if "roslaunch" in line:
+                    self.wait_for(lambda: "started with pid" in Path(output.name).read_text() or launch.poll() is not None)
                 time.sleep(STAYS_S)
                 self.assertIsNone(launch.poll())
                 self.end(launch)
-                output.seek(0)
-                self.assertNotRegex(output.read(), "process has died|REQUIRED process|Traceback|RLException")
+                self.assertNotRegex(Path(output.name).read_text(), "process has died|REQUIRED process|Traceback|RLException")
 
         self.check_each(launches + lines(f"rosrun {PACKAGE} odometry_relay"), check)
 
