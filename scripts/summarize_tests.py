@@ -25,6 +25,10 @@ def junit_cases(results):
         except ElementTree.ParseError as error:
             yield path.name, "failed", f"unreadable result file: {error}"
             continue
+        counted = sum(int(suite.get(kind) or 0) for suite in root.iter("testsuite") for kind in ("failures", "errors"))
+        named = sum(1 for kind in ("failure", "error") for _ in root.iter(kind))
+        if counted > named:
+            yield path.name, "failed", f"{counted} failures, of which {named} have a test case"
         for case in root.iter("testcase"):
             name = f"{case.get('classname')}.{case.get('name')}"
             problem = case.find("failure") if case.find("failure") is not None else case.find("error")
