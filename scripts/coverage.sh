@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Line coverage of the core, which is all modules below ros, by its gtests as scripts/sanitize.sh address runs them.
+# Line coverage of the core, which is all modules below bags, by its gtests as scripts/sanitize.sh address runs them.
 #   scripts/coverage.sh [MINIMUM [MODULE...]]     percent, default 90; these modules alone, by their own gtests
 # The table by file is in build/instrumented/coverage.txt.
 # Ends with code 1 if it is less, or a test fails. Prints the ten files with the lowest coverage.

@@ -16,6 +16,7 @@ LAYERS = [
     ["slam", "simulation", "io"],
     ["evaluation", "merging"],
     ["app"],
+    ["bags"],
     ["ros"],
     ["programs", "nodelets", "rviz_plugins"],
 ]
@@ -26,7 +27,7 @@ LIBRARIES = {
     "ROS": (r"(ros|rosbag|roslib|rosconsole|console_bridge|tf|tf2|tf2_\w+|nodelet|pluginlib|class_loader|actionlib|rviz"
             r"|diagnostic_updater|message_filters|image_transport|dynamic_reconfigure|XmlRpc\w*|\w+_msgs|std_srvs|pcl_ros"
             r"|pcl_conversions|cv_bridge)[/.]|semantic_mht_slam/[A-Z]",
-            {"ros", "perception", "programs", "nodelets", "rviz_plugins"}, {"ros", "perception"}),
+            {"bags", "ros", "perception", "programs", "nodelets", "rviz_plugins"}, {"bags", "ros", "perception"}),
     "Qt and rviz": (r"(Q[A-Z]\w+|Qt\w+/.*|rviz/.*)$", {"rviz_plugins"}, set()),
     "Ceres": (r"(ceres|glog)/", {"graph"}, set()),
     "FLANN": (r"flann/", {"place"}, set()),

@@ -8,9 +8,9 @@
 #include "semantic_mht_slam/app/labelled_scans.h"
 #include "semantic_mht_slam/app/recording.h"
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/bags/bag_file.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/dataset.h"
-#include "semantic_mht_slam/ros/bag_file.h"
 
 #include "program.h"
 #include "progress.h"

@@ -18,10 +18,10 @@
 
 #include "semantic_mht_slam/app/simulated_dataset.h"
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/stopwatch.h"
 #include "semantic_mht_slam/io/yaml_file.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/simulation/simulator.h"
 
 #include "program.h"

@@ -9,11 +9,11 @@
 #include <boost/program_options.hpp>
 
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/evaluation/svg_plot.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
-#include "semantic_mht_slam/ros/map_file.h"
 
 #include "landmark_table.h"
 #include "program.h"

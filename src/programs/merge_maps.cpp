@@ -5,13 +5,13 @@
 
 #include <boost/program_options.hpp>
 
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/stopwatch.h"
 #include "semantic_mht_slam/io/output_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
 #include "semantic_mht_slam/merging/map_merger.h"
-#include "semantic_mht_slam/ros/map_file.h"
 #include "semantic_mht_slam/slam/slam_parts_state.h"
 #include "semantic_mht_slam/slam/surroundings.h"
 

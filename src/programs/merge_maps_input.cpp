@@ -8,10 +8,10 @@
 #include <sstream>
 #include <utility>
 
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/merging/landmark_map.h"
-#include "semantic_mht_slam/ros/map_file.h"
 
 namespace semantic_mht_slam {
 namespace {

@@ -5,8 +5,8 @@
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
 
-#include "semantic_mht_slam/ros/conversions.h"
-#include "semantic_mht_slam/ros/odometry_axes.h"
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/odometry_axes.h"
 
 #include "program.h"
 

@@ -7,12 +7,12 @@
 #include "semantic_mht_slam/app/recording.h"
 #include "semantic_mht_slam/app/simulated_dataset.h"
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/bags/bag_file.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/dataset.h"
 #include "semantic_mht_slam/io/staged_folder.h"
 #include "semantic_mht_slam/io/yaml_file.h"
-#include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/simulation/simulator.h"
 
 #include "program.h"

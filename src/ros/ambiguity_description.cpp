@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/text.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/landmark_description.h"
 
 namespace semantic_mht_slam {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/text.h"
-#include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/perception/cloud_extractor.h"
 #include "semantic_mht_slam/perception/image_extractor.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/markers.h"
 #include "semantic_mht_slam/ros/sensor_conversions.h"
 

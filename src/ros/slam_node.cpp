@@ -4,8 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/length.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/parameters.h"
 #include "semantic_mht_slam/ros/starting_map.h"
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/ros/slam_node.h"
 
 // What comes to the node, until the worker takes it, and what goes out if the worker does not come to it.

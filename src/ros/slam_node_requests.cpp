@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/error.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/map_path.h"
 #include "semantic_mht_slam/ros/slam_node.h"
 

@@ -9,10 +9,10 @@
 #include <boost/make_shared.hpp>
 #include <ros/callback_queue.h>
 
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/common/error.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/landmark_choice.h"
-#include "semantic_mht_slam/ros/map_file.h"
 #include "semantic_mht_slam/ros/map_path.h"
 #include "semantic_mht_slam/ros/slam_node.h"
 

@@ -8,8 +8,8 @@
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/ros/ambiguity_description.h"
-#include "semantic_mht_slam/ros/conversions.h"
 #include "semantic_mht_slam/ros/graph_view.h"
 #include "semantic_mht_slam/ros/markers.h"
 #include "semantic_mht_slam/ros/thinned.h"

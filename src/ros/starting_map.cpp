@@ -4,8 +4,8 @@
 
 #include <ros/init.h>
 
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/common/error.h"
-#include "semantic_mht_slam/ros/map_file.h"
 #include "semantic_mht_slam/ros/map_path.h"
 
 namespace semantic_mht_slam {

@@ -5,9 +5,9 @@
 
 #include <tf2/buffer_core.h>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/objects_gate.h"
 #include "semantic_mht_slam/ros/input_plausibility.h"
-#include "semantic_mht_slam/ros/objects_gate.h"
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_values.h"

@@ -15,8 +15,8 @@
 #include <semantic_mht_slam/SemanticMap.h>
 #include <semantic_mht_slam/SetMode.h>
 
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/io/text_file.h"
-#include "semantic_mht_slam/ros/map_file.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/driving_node.h"

@@ -15,8 +15,8 @@
 
 #include "semantic_mht_slam/app/offline_runner.h"
 #include "semantic_mht_slam/app/system_config.h"
-#include "semantic_mht_slam/ros/conversions.h"
-#include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/running_node.h"

@@ -10,8 +10,8 @@
 
 #include <semantic_mht_slam/SaveMap.h>
 
+#include "semantic_mht_slam/bags/bag_file.h"
 #include "semantic_mht_slam/io/text_file.h"
-#include "semantic_mht_slam/ros/bag_file.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/running_node.h"

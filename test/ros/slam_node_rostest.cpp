@@ -17,8 +17,8 @@
 
 #include "semantic_mht_slam/app/offline_runner.h"
 #include "semantic_mht_slam/app/system_config.h"
-#include "semantic_mht_slam/ros/bag_file.h"
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/bag_file.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/recordings.h"

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "semantic_mht_slam/ros/bag_file.h"
-#include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/bags/bag_file.h"
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/ros/map_path.h"
 
 #include "support/expect_input_error.h"

@@ -3,7 +3,7 @@
 
 #include <dlfcn.h>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 
 namespace semantic_mht_slam {
 

@@ -14,7 +14,7 @@
 
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 #include "support/ros_process.h"

@@ -26,15 +26,15 @@
 #include <semantic_mht_slam/SetMode.h>
 
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/bags/objects_gate.h"
+#include "semantic_mht_slam/bags/odometry_gate.h"
+#include "semantic_mht_slam/bags/sensor_transforms.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/ros/failure_guard.h"
 #include "semantic_mht_slam/ros/input_plausibility.h"
 #include "semantic_mht_slam/ros/input_queue.h"
 #include "semantic_mht_slam/ros/live_parameters.h"
 #include "semantic_mht_slam/ros/node_diagnostics.h"
-#include "semantic_mht_slam/ros/objects_gate.h"
-#include "semantic_mht_slam/ros/odometry_gate.h"
-#include "semantic_mht_slam/ros/sensor_transforms.h"
 #include "semantic_mht_slam/ros/slam_publisher.h"
 #include "semantic_mht_slam/ros/throttled_warnings.h"
 #include "semantic_mht_slam/ros/ticket_mutex.h"

@@ -1,9 +1,9 @@
-#include "semantic_mht_slam/ros/odometry_gate.h"
+#include "semantic_mht_slam/bags/odometry_gate.h"
 
 #include <cstdint>
 
-#include "semantic_mht_slam/ros/conversions.h"
-#include "semantic_mht_slam/ros/sensor_transforms.h"
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/sensor_transforms.h"
 
 namespace semantic_mht_slam {
 namespace {

@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/time_jump_guard.h"
+#include "semantic_mht_slam/bags/time_jump_guard.h"
 
 #include <gtest/gtest.h>
 

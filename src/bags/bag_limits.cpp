@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/bag_limits.h"
+#include "semantic_mht_slam/bags/bag_limits.h"
 
 #include <array>
 #include <cstring>

@@ -3,11 +3,11 @@
 #include <std_msgs/Time.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include "semantic_mht_slam/bags/atomic_bag.h"
+#include "semantic_mht_slam/bags/bag_file.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/ros_time.h"
-#include "semantic_mht_slam/ros/atomic_bag.h"
-#include "semantic_mht_slam/ros/bag_file.h"
-#include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {

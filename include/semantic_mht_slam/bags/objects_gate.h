@@ -7,9 +7,9 @@
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
 #include "semantic_mht_slam/app/recording.h"
+#include "semantic_mht_slam/bags/odometry_gate.h"
+#include "semantic_mht_slam/bags/sensor_transforms.h"
 #include "semantic_mht_slam/models/class_table.h"
-#include "semantic_mht_slam/ros/odometry_gate.h"
-#include "semantic_mht_slam/ros/sensor_transforms.h"
 
 namespace semantic_mht_slam {
 

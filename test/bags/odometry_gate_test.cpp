@@ -1,8 +1,8 @@
-#include "semantic_mht_slam/ros/odometry_gate.h"
+#include "semantic_mht_slam/bags/odometry_gate.h"
 
 #include <gtest/gtest.h>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {

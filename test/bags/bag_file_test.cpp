@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/bag_file.h"
+#include "semantic_mht_slam/bags/bag_file.h"
 
 #include <filesystem>
 
@@ -9,9 +9,9 @@
 
 #include "semantic_mht_slam/app/offline_runner.h"
 #include "semantic_mht_slam/app/result_files.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/io/dataset.h"
 #include "semantic_mht_slam/io/text_file.h"
-#include "semantic_mht_slam/ros/conversions.h"
 
 #include "support/expect_input_error.h"
 #include "support/recordings.h"

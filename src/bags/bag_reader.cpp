@@ -9,12 +9,12 @@
 #include <tf2/buffer_core.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include "semantic_mht_slam/bags/bag_file.h"
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/objects_gate.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/existing_path.h"
-#include "semantic_mht_slam/ros/bag_file.h"
-#include "semantic_mht_slam/ros/conversions.h"
-#include "semantic_mht_slam/ros/objects_gate.h"
 
 namespace semantic_mht_slam {
 namespace {

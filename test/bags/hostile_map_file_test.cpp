@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/map/map_state.h"
-#include "semantic_mht_slam/ros/map_file.h"
 
 #include "support/expect_input_error.h"
 #include "support/graph_section.h"

@@ -1,8 +1,8 @@
-#include "semantic_mht_slam/ros/objects_gate.h"
+#include "semantic_mht_slam/bags/objects_gate.h"
 
 #include <utility>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 
 namespace semantic_mht_slam {
 

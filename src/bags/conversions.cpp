@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/bags/map_file.h"
 
 #include <algorithm>
 #include <filesystem>

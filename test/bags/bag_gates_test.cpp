@@ -7,8 +7,8 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include "semantic_mht_slam/app/offline_runner.h"
-#include "semantic_mht_slam/ros/bag_file.h"
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/bag_file.h"
+#include "semantic_mht_slam/bags/conversions.h"
 
 #include "support/expect_input_error.h"
 #include "support/recordings.h"

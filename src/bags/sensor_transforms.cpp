@@ -1,10 +1,10 @@
-#include "semantic_mht_slam/ros/sensor_transforms.h"
+#include "semantic_mht_slam/bags/sensor_transforms.h"
 
 #include <algorithm>
 
 #include <tf2/exceptions.h>
 
-#include "semantic_mht_slam/ros/conversions.h"
+#include "semantic_mht_slam/bags/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {

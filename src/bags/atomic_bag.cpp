@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/atomic_bag.h"
+#include "semantic_mht_slam/bags/atomic_bag.h"
 
 #include <cerrno>
 #include <cstring>

@@ -7,8 +7,8 @@
 
 #include "semantic_mht_slam/app/refused_input.h"
 #include "semantic_mht_slam/app/system_config.h"
+#include "semantic_mht_slam/bags/time_jump_guard.h"
 #include "semantic_mht_slam/common/stamp.h"
-#include "semantic_mht_slam/ros/time_jump_guard.h"
 
 namespace semantic_mht_slam {
 

@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/odometry_axes.h"
+#include "semantic_mht_slam/bags/odometry_axes.h"
 
 #include "semantic_mht_slam/common/error.h"
 

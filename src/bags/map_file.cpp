@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/ros/map_file.h"
+#include "semantic_mht_slam/bags/map_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,12 +10,12 @@
 #include <semantic_mht_slam/MapHeader.h>
 #include <semantic_mht_slam/MapSection.h>
 
+#include "semantic_mht_slam/bags/atomic_bag.h"
+#include "semantic_mht_slam/bags/bag_limits.h"
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/output_file.h"
-#include "semantic_mht_slam/ros/atomic_bag.h"
-#include "semantic_mht_slam/ros/bag_limits.h"
-#include "semantic_mht_slam/ros/conversions.h"
 
 namespace semantic_mht_slam {
 namespace {
