@@ -3,8 +3,7 @@
 #include <cmath>
 #include <iterator>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 // What a value has to be to be one that the program wrote: the rules for reading a state.
 namespace semantic_mht_slam {
@@ -21,28 +20,21 @@ bool areProbabilities(const Probs& probs) {
   return probs.size() > 0 && (probs >= 0.0).all() && std::abs(probs.sum() - 1.0) < kRounding;
 }
 
+/// A covariance, or an information matrix, that has an inverse. Of these sizes alone, compiled once: what solves them
+/// is a second or more of every file that needs it.
 template <class Matrix>
-bool isSymmetric(const Matrix& matrix) {
-  if (matrix.rows() != matrix.cols() || !matrix.allFinite()) return false;
-  if (matrix.size() == 0) return true;
-  return (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= kRounding * matrix.cwiseAbs().maxCoeff();
-}
-
-/// A covariance, or an information matrix, that has an inverse.
-template <class Matrix>
-bool isPositive(const Matrix& matrix) {
-  return isSymmetric(matrix) && matrix.llt().info() == Eigen::Success;
-}
+bool isPositive(const Matrix& matrix);
+extern template bool isPositive(const Eigen::Matrix2d&);
+extern template bool isPositive(const Eigen::Matrix3d&);
+extern template bool isPositive(const Eigen::Matrix4d&);
+extern template bool isPositive(const Eigen::Matrix<double, 6, 6>&);
+extern template bool isPositive(const Eigen::MatrixXd&);
 
 /// The same without one, up to rounding.
 template <class Matrix>
-bool isNotNegative(const Matrix& matrix) {
-  if (!isSymmetric(matrix)) return false;
-  if (matrix.size() == 0) return true;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(matrix, Eigen::EigenvaluesOnly);
-  return solver.info() == Eigen::Success &&
-         solver.eigenvalues().minCoeff() >= -kRounding * matrix.cwiseAbs().maxCoeff();
-}
+bool isNotNegative(const Matrix& matrix);
+extern template bool isNotNegative(const Eigen::Matrix<double, 6, 6>&);
+extern template bool isNotNegative(const Eigen::MatrixXd&);
 
 /// The upper square root of an information matrix.
 template <class Matrix>
