@@ -27,6 +27,8 @@ BENCHMARK_PACKAGES=(python3-matplotlib python3-pandas python3-jinja2)
 TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest catkin-lint)
 INSTRUMENTED_PACKAGES=(clang llvm)
 
+PACKAGE_LIST=/var/lib/dpkg/status
+
 REPOSITORY=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 export PATH="/usr/bin:/bin:/usr/sbin:/sbin:$PATH"  # the system's Python has catkin; another one on the PATH may not
 
@@ -39,11 +41,11 @@ as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
-
 install_missing() {
+  local installed
   MISSING=()
-  for package in "${PACKAGES[@]}"; do is_installed "$package" || MISSING+=("$package"); done
+  installed=$(dpkg-query -W -f='|${Package} ${db:Status-Status}|' "${PACKAGES[@]}" 2>/dev/null) || true  # it says what it knows
+  for package in "${PACKAGES[@]}"; do [[ "$installed" == *"|$package installed|"* ]] || MISSING+=("$package"); done
   [ "${#MISSING[@]}" -eq 0 ] && return
   echo "setup: installing ${#MISSING[@]} packages: ${MISSING[*]}"
   if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
@@ -83,33 +85,89 @@ say_progress() {
   done
 }
 
-configure_and_build() {
-  local base=$REPOSITORY log
-  [[ "$base" != *[[:space:]]* ]] || base=$(link_without_blanks "$REPOSITORY")
-  local workspace="$base/build/workspace"
-  local link="$workspace/src/semantic_mht_slam" source="$base" build="$workspace/build"
-  mkdir -p "$build"
+# Makes the folder of links in which ROS finds the package, and the file that says where the build is.
+lay_out() {
+  local link=$1 entry
+  mkdir -p "$BUILD"
   [ ! -L "$link" ] || rm "$link"
   mkdir -p "$link"
   for entry in "$REPOSITORY"/*; do
-    [ "$entry" = "$REPOSITORY/build" ] || ln -sfn "../../../../$(basename "$entry")" "$link/"
+    [ "$entry" = "$REPOSITORY/build" ] || [ -e "$link/${entry##*/}" ] || ln -sfn "../../../../${entry##*/}" "$link/"
   done
-  printf '%s\n' "$workspace" >"$REPOSITORY/build/location"
-  log="$build/configure.log"
-  if ! (cd "$source" && cmake -S "$source" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON \
-    -DCATKIN_DEVEL_PREFIX="$workspace/devel" -DCMAKE_INSTALL_PREFIX="$workspace/install" \
-    -DSEMANTIC_MHT_SLAM_ROS_FOLDER="$link" \
-    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
-    -DCMAKE_CXX_COMPILER_LAUNCHER=ccache) >"$log" 2>&1; then
+  printf '%s\n' "$WORKSPACE" >"$REPOSITORY/build/location"
+}
+
+# unchanged FILE TEXT FIND...: FILE holds this TEXT and is younger than all that `find FIND...` finds.
+unchanged() {
+  [ -f "$1" ] && [ "$(cat "$1")" = "$2" ] && [ -z "$(find "${@:3}" -cnewer "$1" -print -quit 2>&1)" ]
+}
+
+# Only at first, with other options or other packages: what the build itself sees needs no configuring from here.
+configure() {
+  local source=$1 log="$BUILD/configure.log" stamp="$BUILD/configured"
+  local command=(cmake -S "$source" -B "$BUILD" "${@:2}")
+  if [ -f "$BUILD/Makefile" ] && unchanged "$stamp" "${command[*]}" "$PACKAGE_LIST"; then return; fi
+  rm -f "$stamp"
+  if ! (cd "$source" && "${command[@]}") >"$log" 2>&1; then
     tail -n 30 "$log" >&2
     fail "configuring failed; the end of its output is above (all of it: $log)"
   fi
-  cmake --build "$build" -- -j"$(nproc)" --no-print-directory "${TARGETS[@]}" >"$build/build.log" 2>&1 &
-  say_progress "$!" "$build/build.log"
+  printf '%s' "${command[*]}" >"$stamp"
+}
+
+# Whether all targets are among those of a build before, which are its folder's name.
+comprises() {
+  local before=",${1##*/}," target
+  for target in "${TARGETS[@]}"; do
+    [[ "$before" != *",$target,"* ]] || continue
+    [[ "$before" == *,all,* ]] || return 1
+    [[ -f "$REPOSITORY/src/programs/$target.cpp" || "$target" == semantic_mht_slam_gen* ]] || return 1
+  done
+}
+
+# Whether the targets were built before, and since then no file of the checkout, no package and nothing that was built has
+# changed: to find that out target by target takes a minute of a slow machine.
+is_built() {
+  local past
+  for past in "$BUILD"/built/*; do
+    comprises "$past" &&
+      unchanged "$past/begun" "$1" "$REPOSITORY" "$PACKAGE_LIST" \
+        '(' -path "$REPOSITORY/build" -o -path "$REPOSITORY/.git" -o -name __pycache__ ')' -prune -o &&
+      unchanged "$past/done" "" "$WORKSPACE/devel/lib" "$WORKSPACE/devel/lib/semantic_mht_slam" "$WORKSPACE/devel/include" \
+        "$WORKSPACE/devel/include/semantic_mht_slam" "$BUILD/CMakeCache.txt" "$BUILD/Makefile" -maxdepth 1 && return
+  done
+  return 1
+}
+
+build() {
+  local revision past
+  revision=$(git -C "$REPOSITORY" describe --always --dirty 2>/dev/null) || true  # it is compiled in
+  if is_built "$revision"; then echo "setup: everything is built"; return; fi
+  echo "setup: building"
+  past="$BUILD/built/$(IFS=,; echo "${TARGETS[*]}")"
+  mkdir -p "$past"
+  rm -f "$past/done"
+  printf '%s' "$revision" >"$past/begun"
+  cmake --build "$BUILD" -- -j"$(nproc)" --no-print-directory "${TARGETS[@]}" >"$BUILD/build.log" 2>&1 &
+  say_progress "$!" "$BUILD/build.log"
   wait "$!" || {
-    grep -E -A5 "error:|\*\*\*" "$build/build.log" | head -n 60 >&2 || true
-    fail "building failed; the first errors are above (all of it: $build/build.log)"
+    grep -E -A5 "error:|\*\*\*" "$BUILD/build.log" | head -n 60 >&2 || true
+    fail "building failed; the first errors are above (all of it: $BUILD/build.log)"
   }
+  : >"$past/done"
+}
+
+configure_and_build() {
+  local base=$REPOSITORY
+  [[ "$base" != *[[:space:]]* ]] || base=$(link_without_blanks "$REPOSITORY")
+  WORKSPACE="$base/build/workspace"
+  BUILD="$WORKSPACE/build"
+  lay_out "$WORKSPACE/src/semantic_mht_slam"
+  configure "$base" -DCMAKE_BUILD_TYPE=Release -DCATKIN_ENABLE_TESTING=ON \
+    -DCATKIN_DEVEL_PREFIX="$WORKSPACE/devel" -DCMAKE_INSTALL_PREFIX="$WORKSPACE/install" \
+    -DSEMANTIC_MHT_SLAM_ROS_FOLDER="$WORKSPACE/src/semantic_mht_slam" \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
+  build
 }
 
 TARGETS=(all)
@@ -127,5 +185,4 @@ case "${1:-}" in
   *) fail "unknown option $1 (there are --tests, --benchmark, --instrumented and --only)" ;;
 esac
 install_missing
-echo "setup: building"
 configure_and_build
