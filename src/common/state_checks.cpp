@@ -34,6 +34,7 @@ template bool isPositive(const Eigen::Matrix3d&);
 template bool isPositive(const Eigen::Matrix4d&);
 template bool isPositive(const Eigen::Matrix<double, 6, 6>&);
 template bool isPositive(const Eigen::MatrixXd&);
+template bool isNotNegative(const Eigen::Matrix4d&);
 template bool isNotNegative(const Eigen::Matrix<double, 6, 6>&);
 template bool isNotNegative(const Eigen::MatrixXd&);
 
