@@ -44,7 +44,7 @@ as_root() {
 install_missing() {
   local installed
   MISSING=()
-  installed=$(dpkg-query -W -f='|${Package} ${db:Status-Status}|' "${PACKAGES[@]}" 2>/dev/null) || true  # it says what it knows
+  installed=$(dpkg-query -W -f='|${Package} ${db:Status-Status}|' "${PACKAGES[@]}" 2>/dev/null) || true
   for package in "${PACKAGES[@]}"; do [[ "$installed" == *"|$package installed|"* ]] || MISSING+=("$package"); done
   [ "${#MISSING[@]}" -eq 0 ] && return
   echo "setup: installing ${#MISSING[@]} packages: ${MISSING[*]}"
@@ -125,14 +125,18 @@ comprises() {
   done
 }
 
+# in_checkout FIND...: what `find FIND...` finds, but for what building and Python make.
+in_checkout() {
+  find "$REPOSITORY" '(' -path "$REPOSITORY/build" -o -path "$REPOSITORY/.git" -o -name __pycache__ ')' -prune -o ! -type d "$@"
+}
+
 # Whether the targets were built before, and since then no file of the checkout, no package and nothing that was built has
 # changed: to find that out target by target takes a minute of a slow machine.
 is_built() {
   local past
   for past in "$BUILD"/built/*; do
     comprises "$past" &&
-      unchanged "$past/begun" "$1" "$REPOSITORY" "$PACKAGE_LIST" \
-        '(' -path "$REPOSITORY/build" -o -path "$REPOSITORY/.git" -o -name __pycache__ ')' -prune -o &&
+      unchanged "$past/begun" "$1" "$PACKAGE_LIST" && [ -z "$(in_checkout -cnewer "$past/begun" -print -quit)" ] &&
       unchanged "$past/done" "" "$WORKSPACE/devel/lib" "$WORKSPACE/devel/lib/semantic_mht_slam" "$WORKSPACE/devel/include" \
         "$WORKSPACE/devel/include/semantic_mht_slam" "$BUILD/CMakeCache.txt" "$BUILD/Makefile" -maxdepth 1 && return
   done
@@ -140,14 +144,15 @@ is_built() {
 }
 
 build() {
-  local revision past
-  revision=$(git -C "$REPOSITORY" describe --always --dirty 2>/dev/null) || true  # it is compiled in
-  if is_built "$revision"; then echo "setup: everything is built"; return; fi
+  local state past
+  state=$(git -C "$REPOSITORY" describe --always --dirty 2>/dev/null) || true  # it is compiled in
+  state="$state, files: $(in_checkout -print | sort | cksum)"
+  if is_built "$state"; then echo "setup: everything is built"; return; fi
   echo "setup: building"
   past="$BUILD/built/$(IFS=,; echo "${TARGETS[*]}")"
   mkdir -p "$past"
   rm -f "$past/done"
-  printf '%s' "$revision" >"$past/begun"
+  printf '%s' "$state" >"$past/begun"
   cmake --build "$BUILD" -- -j"$(nproc)" --no-print-directory "${TARGETS[@]}" >"$BUILD/build.log" 2>&1 &
   say_progress "$!" "$BUILD/build.log"
   wait "$!" || {

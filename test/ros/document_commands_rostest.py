@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""The commands of README and docs that need a running system, run as they are written but for what stands for a user's own:
-names, files and ids."""
+"""The commands of README and docs that need a running system, run as they are written but for what stands for a user's own
+(names, files and ids) and for hours."""
 import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -21,19 +23,14 @@ WAIT_S = 60.0
 STAYS_S = 3.0  # what a launch or node that has begun gets to end in
 PACKAGE = "semantic_mht_slam"
 REPOSITORY = Path(__file__).resolve().parents[2]
-DOCUMENTS = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
+sys.path[:0] = [str(REPOSITORY / "test" / folder) for folder in ("documents", "support")]
+from documented import LAUNCH, LONG_RUN, commands  # noqa: E402 pylint: disable=wrong-import-position
+from tiny_network import write_tiny_network  # noqa: E402 pylint: disable=wrong-import-position
 
 
 def lines(begin):
-    """The lines of shell blocks that begin so, each once, without comments."""
-    found = []
-    for document in DOCUMENTS:
-        for block in re.findall(r"```(?:sh|bash)\n(.*?)```", document.read_text(encoding="utf-8"), re.DOTALL):
-            for line in block.replace("\\\n", " ").splitlines():
-                line = re.sub(r"\s+#.*", "", line).strip()
-                if re.match(begin, line) and line not in found:
-                    found.append(line)
-    return found
+    """The commands of shell blocks that begin so, each once."""
+    return list(dict.fromkeys(command for _, command in commands() if re.match(begin, command)))
 
 
 class DocumentCommandsTest(unittest.TestCase):
@@ -53,6 +50,8 @@ class DocumentCommandsTest(unittest.TestCase):
         names = {"/your/objects": "/objects", "/your/odometry": "/odometry", "rviz:=true": "rviz:=false",
                  "/path/to/your_classes.yaml": str(REPOSITORY / "config/classes_semantic_kitti.yaml"),
                  "/path/to/map.bag": os.path.join(self.folder, "map.bag"),
+                 "/path/to/network.onnx": os.path.join(self.folder, "network.onnx"),
+                 "/path/to/espnet.onnx": os.path.join(self.folder, "network.onnx"),
                  "/data/town.bag": os.path.join(self.folder, "map.bag"), "/tmp/town": os.path.join(self.folder, "town")}
         for name, own in names.items():
             line = line.replace(name, own)
@@ -143,12 +142,13 @@ class DocumentCommandsTest(unittest.TestCase):
     def test_every_launch_file_begins_as_it_is_called(self):
         shutil.copy(self.bag, os.path.join(self.folder, "map.bag"))
         self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && cp result/map.bag map.bag")
-        launches = [line for line in lines(r"(ROS_NAMESPACE=\S+ )?roslaunch") if "model:=" not in line]
-        self.assertGreater(len(launches), 7)
+        write_tiny_network(os.path.join(self.folder, "network.onnx"))
+        launches = lines(LAUNCH)
+        self.assertGreater(len(launches), 9)
 
         def check(line):
             line = self.own(line)
-            if "slam.launch" in line or "localization.launch" in line or "kitti.launch" in line:
+            if re.search(r"(slam|localization|kitti)\.launch", line):
                 line += " rviz:=false"
             with tempfile.NamedTemporaryFile("w+") as output:
                 launch = self.start(line, output)
@@ -160,6 +160,20 @@ class DocumentCommandsTest(unittest.TestCase):
                 self.assertNotRegex(Path(output.name).read_text(), "process has died|REQUIRED process|Traceback|RLException")
 
         self.check_each(launches + lines(f"rosrun {PACKAGE} odometry_relay"), check)
+
+    def test_a_long_run_says_how_it_went(self):
+        with socket.socket() as free:
+            free.bind(("", 0))
+            port = free.getsockname()[1]
+        self.environment["ROS_MASTER_URI"] = f"http://localhost:{port}"
+        core, parameters, node, drive = [self.one(f"{command}$") for command in LONG_RUN]
+        self.start(f"{core} -p {port}")
+        self.wait_for(lambda: subprocess.run(["rosparam", "list"], env=self.environment, stdout=subprocess.DEVNULL,
+                                             stderr=subprocess.DEVNULL, check=False).returncode == 0)
+        self.run_line(parameters)
+        self.start(node)
+        said = self.run_line(drive.replace("--hours 8 --row 1", "--hours 0.01 --row 0.01 --set route.length=300"))
+        self.assertRegex(said, r"drive \(h\).*\n +0\.01 ")
 
 
 if __name__ == "__main__":
