@@ -24,7 +24,8 @@ std::optional<Decimal> shortestDecimal(double value);
 /// As printf's %g writes it.
 std::string toText(const Decimal& decimal);
 
-/// As printf's %f writes it with so many decimals, without the sign of what is rounded to 0; empty for what is far from 1.
+/// As printf's %f writes it with so many decimals, without the sign of what is rounded to 0; empty for what is far
+/// from 1.
 std::optional<std::string> toFixedText(double value, int decimals);
 
 /// The number that a text of few digits is nearest to; empty for any other text, such as none of a number.
