@@ -1,7 +1,6 @@
 #include "ambiguity_view.h"
 
 #include <QHeaderView>
-#include <QSplitter>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -12,7 +11,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr std::size_t kMostShown = 30;
-constexpr int kMinRows = 6;  // the header among them
+constexpr int kMinHeight_px = 20;
 
 QStringList toCells(const std::vector<std::string>& texts) {
   QStringList cells;
@@ -21,14 +20,6 @@ QStringList toCells(const std::vector<std::string>& texts) {
 }
 
 }  // namespace
-
-QWidget* withHandleBetween(QWidget* above, QWidget* below) {
-  auto* both = new QSplitter(Qt::Vertical);
-  both->setChildrenCollapsible(false);
-  both->addWidget(above);
-  both->addWidget(below);
-  return both;
-}
 
 AmbiguityView::AmbiguityView(QWidget* parent) : QTreeWidget(parent) {
   setObjectName("ambiguous");
@@ -39,7 +30,7 @@ AmbiguityView::AmbiguityView(QWidget* parent) : QTreeWidget(parent) {
       "Detections of the newest submap whose landmark is not sure, the least sure first, and what they may be of. "
       "Place, class, expected: nats by which each speaks for the landmark against clutter; count: detections that the "
       "landmark has, and nats by which the hypotheses preferred it for them.");
-  setMinimumHeight(kMinRows * (fontMetrics().height() + 4));
+  setMinimumHeight(kMinHeight_px);
 }
 
 void AmbiguityView::list(const SemanticMap& map, const AmbiguousDetections& message) {

@@ -16,7 +16,4 @@ class AmbiguityView : public QTreeWidget {
   void list(const SemanticMap& map, const AmbiguousDetections& message);
 };
 
-/// Both, one above the other; whoever wants more of one takes it from the other.
-QWidget* withHandleBetween(QWidget* above, QWidget* below);
-
 }  // namespace semantic_mht_slam

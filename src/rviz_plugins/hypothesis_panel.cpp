@@ -50,8 +50,8 @@ HypothesisPanel::HypothesisPanel(QWidget* parent) : rviz::Panel(parent) {
   status_->setMinimumHeight(3 * status_->fontMetrics().height());  // so that no answer moves the buttons
   for (QLabel* label : {counters_, legend_, fault_label_}) layout->addWidget(label);
   layout->addWidget(tree_view_ = new TreeView);
-  ambiguity_view_ = new AmbiguityView;
-  layout->addWidget(withHandleBetween(makeTable(), ambiguity_view_), 1);
+  layout->addWidget(makeTable(), 1);
+  layout->addWidget(ambiguity_view_ = new AmbiguityView, 1);
   layout->addWidget(landmark_);
   layout->addWidget(makeButtons());
   layout->addWidget(status_);
