@@ -1,8 +1,8 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <ceres/sized_cost_function.h>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/pose.h"
 
 #include "edge_residuals.h"
@@ -13,7 +13,7 @@ namespace semantic_mht_slam {
 /// the wrong directions as soon as the matrix is not diagonal.)
 template <class Matrix>
 Matrix squareRootInformation(const Matrix& information) {
-  return information.llt().matrixU();
+  return upperSquareRoot(information);
 }
 
 /// The upper square root of an information matrix itself, for a cost that is made again from what it was.

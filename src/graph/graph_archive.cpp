@@ -5,8 +5,8 @@
 #include <numeric>
 #include <set>
 
-#include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/state_checks.h"
 
@@ -132,7 +132,7 @@ void transfer(StateArchive& archive, LoopState3& loop) {
   archive.require(isPositive(cov) && from != to, "a loop closure whose covariance is not positive, or of one node");
   archive.require(loop.state >= LoopState::kAccepted && loop.state <= LoopState::kRemoved,
                   "a loop closure in a state that there is not");
-  if (archive.isReading()) loop.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
+  if (archive.isReading()) loop.cost = std::make_unique<RelativePose3Cost>(T_from_to, inverted(cov));
 }
 
 void GraphState::transfer(StateArchive& archive) {
@@ -189,7 +189,7 @@ void transferGraph(StateArchive& archive, const PoseGraphConfig& config, const s
       review.extendOdometry(T_previous_node, cov, i == 0);
       if (i == 0) continue;
       archive.require(isPositive(cov), "odometry whose covariance is not positive");
-      graph.nodes[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_node, cov.inverse());
+      graph.nodes[i].odometry_cost = std::make_unique<RelativePose3Cost>(T_previous_node, inverted(cov));
     }
   }
   review.transfer(archive, graph);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/gaussian.h"
 
 namespace semantic_mht_slam {
@@ -30,7 +30,7 @@ Eigen::Vector3d meanOf(const std::vector<SightingFactor>& sightings, const std::
     information += in_world;
     weighted += in_world * (T_world_node * sighting.cost->measured());
   }
-  return information.ldlt().solve(weighted);
+  return solved(information, weighted);
 }
 
 /// The landmark seen first of those that come into a group as a whole; null if there is none.
@@ -69,11 +69,11 @@ void GraphState::addLoop(const LoopConstraint& loop) {
   nodes[loop.to].loops.push_back(loopCount());
   LoopState3& state = loops.emplace_back();
   state.constraint = loop;
-  state.cost = std::make_unique<RelativePose3Cost>(loop.T_from_to, loop.cov.inverse());
+  state.cost = std::make_unique<RelativePose3Cost>(loop.T_from_to, inverted(loop.cov));
 }
 
 void GraphState::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
-  nodes[node].priors.push_back({T_world_node, cov, std::make_unique<RelativePose3Cost>(T_world_node, cov.inverse())});
+  nodes[node].priors.push_back({T_world_node, cov, std::make_unique<RelativePose3Cost>(T_world_node, inverted(cov))});
   ++priors;
 }
 
@@ -86,7 +86,7 @@ PoseNode GraphState::node(int index) const {
   if (state.odometry_cost) {
     const Matrix6d root = state.odometry_cost->squareRoot();
     node.T_previous_node = state.odometry_cost->measured();
-    node.odometry_cov = symmetric((root.transpose() * root).inverse());
+    node.odometry_cov = symmetric(inverted(Matrix6d(root.transpose() * root)));
   }
   for (const std::int64_t number : state.landmarks) {
     const std::vector<SightingFactor>& sightings = landmarks.at(number).sightings;

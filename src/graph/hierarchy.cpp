@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
+
 #include "shared_landmarks.h"
 #include "subgraph.h"
 #include "tangent.h"
@@ -225,7 +227,7 @@ void Hierarchy::moveChunk(GraphState& graph, const LoopReview& review, int chunk
   }
   const Pose T_hub_next_old = T_hub_world_old * old_hubs[chunk + 1];
   const Vector6d step = offset(T_world_hub.inverse() * skeleton_.pose(chunk + 1) * T_hub_next_old.inverse());
-  const Vector6d pull = review.odometryStepCov(first, next).ldlt().solve(step);
+  const Vector6d pull = solved(review.odometryStepCov(first, next), step);
   for (int i = first; i < next; ++i) {
     const Vector6d share = review.odometryStepCov(first, i) * pull;
     move(i, {expRotation(share.tail<3>()), share.head<3>()});

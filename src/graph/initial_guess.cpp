@@ -4,7 +4,8 @@
 #include <deque>
 #include <numeric>
 
-#include <Eigen/Cholesky>
+
+#include "semantic_mht_slam/common/dense_solvers.h"
 
 #include "pose_block.h"
 
@@ -31,7 +32,7 @@ template <class Information>
 const char* defectOf(bool is_finite, const Information& information) {
   if (!is_finite || !information.allFinite()) return " is not finite";
   // An unchecked Cholesky decomposition would silently optimise nonsense.
-  if (information.llt().info() != Eigen::Success) return " has an information matrix that is not positive definite";
+  if (!choleskyOf(information)) return " has an information matrix that is not positive definite";
   return nullptr;
 }
 

@@ -1,7 +1,7 @@
 #include "semantic_mht_slam/graph/loop_consistency.h"
 
-#include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/max_clique.h"
 
 #include "odometry_chain.h"
@@ -20,7 +20,7 @@ OdometryChain<kDim> odometryOf(const BatchGraph<kDim>& graph, double cov_scale) 
     if (edge == nullptr) {
       chain.startSegment();
     } else {
-      chain.append(edge->T_from_to, cov_scale * edge->information.inverse());
+      chain.append(edge->T_from_to, cov_scale * inverted(edge->information));
     }
   }
   return chain;
@@ -54,7 +54,7 @@ LoopConsistency findConsistentLoops(const BatchGraph<kDim>& graph, double gate, 
       result.consistent.push_back(i);
       continue;
     }
-    const auto loop = makeTestedLoop<kDim>(edge.from, edge.to, edge.T_from_to, edge.information.inverse());
+    const auto loop = makeTestedLoop<kDim>(edge.from, edge.to, edge.T_from_to, inverted(edge.information));
     if (gapToOdometry(odometry, loop) <= gate) {
       loops.push_back(loop);
       edges.push_back(i);

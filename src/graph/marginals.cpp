@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/gaussian.h"
 
 namespace semantic_mht_slam {
@@ -57,7 +56,7 @@ PointInformation informationOf(const LandmarkState& landmark, const GraphState& 
     result.ties.back() += weight * by_step.transpose() * by_point;
     result.of_nodes.back() += weight * by_step.transpose() * by_step;
   }
-  result.conditional_cov = symmetric(result.own.inverse());
+  result.conditional_cov = symmetric(inverted(result.own));
   return result;
 }
 

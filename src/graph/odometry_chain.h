@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/graph/batch_graph.h"
 
 #include "tangent.h"
@@ -83,7 +83,7 @@ class Walk {
   /// Mahalanobis distance squared of the end from the start; they should be the same place.
   double gap() const {
     const auto error = offset(reached_);
-    return error.dot(cov_.ldlt().solve(error));
+    return error.dot(solved(cov_, error));
   }
 
  private:

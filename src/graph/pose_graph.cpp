@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/state_archive.h"
 
 #include "deadline.h"
@@ -65,7 +65,7 @@ int PoseGraph::Impl::addNode(const PoseNode& node) {
   const Pose before = index == 0 ? Pose::identity() : graph_.nodes[index - 1].pose();
   writeBlock(node.T_world_node.value_or(before * node.T_previous_node), state.block.data());
   if (index > 0) {
-    state.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_node, node.odometry_cov.inverse());
+    state.odometry_cost = std::make_unique<RelativePose3Cost>(node.T_previous_node, inverted(node.odometry_cov));
     state.shared_errors = node.shared_errors;
   }
   for (const LandmarkSighting& sighting : node.sightings) graph_.addSighting(sighting);

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/gaussian.h"
 #include "semantic_mht_slam/graph/pose_graph.h"
 
@@ -22,8 +22,7 @@ inline void require(bool condition, const char* message) {
 }
 
 inline bool isCovariance6(const PoseCov& cov) {
-  if (!cov.allFinite() || !cov.isApprox(cov.transpose(), 1e-9)) return false;
-  return cov.llt().info() == Eigen::Success;
+  return cov.allFinite() && cov.isApprox(cov.transpose(), 1e-9) && choleskyOf(cov);
 }
 
 inline void check(const PoseNode& node, bool is_first) {

@@ -5,7 +5,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
+
+#include "semantic_mht_slam/common/dense_solvers.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -56,7 +57,7 @@ Eigen::Vector3d whereFirstSeen(const GraphState& graph, const LandmarkState& lan
     information += in_world;
     weighted += in_world * (T_world_node * sighting.cost->measured());
   }
-  return information.ldlt().solve(weighted);
+  return solved(information, weighted);
 }
 
 /// The sightings of old landmarks, first seen before the present window, by a node; by the chunk where that was.
@@ -101,7 +102,7 @@ std::optional<LoopConstraint> relateThroughLandmarks(const GraphState& graph, in
   }
   const Eigen::LDLT<Matrix6d> factor(information);
   if (factor.info() != Eigen::Success || factor.rcond() < kMinReciprocalCondition) return std::nullopt;
-  return LoopConstraint{node, chunk * config.chunk_nodes, T_node_hub, information.inverse()};
+  return LoopConstraint{node, chunk * config.chunk_nodes, T_node_hub, inverted(information)};
 }
 
 }  // namespace semantic_mht_slam

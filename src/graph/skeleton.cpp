@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
 #include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
 #include <ceres/types.h>
+
+#include "semantic_mht_slam/common/dense_solvers.h"
 
 #include "lent_problem.h"
 #include "marginals.h"
@@ -64,7 +65,7 @@ void Skeleton::setPose(int hub, const Pose& pose) {
 
 int Skeleton::addLink(int from, int to, const Pose& T_from_to, const PoseCov& cov, const SharedErrors& shared_errors) {
   Link& link = links_.emplace_back();
-  link.cost = std::make_unique<RelativePose3Cost>(T_from_to, cov.inverse());
+  link.cost = std::make_unique<RelativePose3Cost>(T_from_to, inverted(cov));
   link.shared_errors = shared_errors;
   link.from = from;
   link.to = to;

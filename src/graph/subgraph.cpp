@@ -7,6 +7,8 @@
 #include <ceres/crs_matrix.h>
 #include <ceres/solver.h>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
+
 #include "lent_problem.h"
 #include "marginals.h"
 #include "solver_steps.h"
@@ -34,7 +36,7 @@ class SightingsTogether {
   }
 
   bool isEmpty() const { return information_.isZero(0.0); }
-  Eigen::Vector3d mean_m() const { return information_.ldlt().solve(weighted_); }
+  Eigen::Vector3d mean_m() const { return solved(information_, weighted_); }
   const Eigen::Matrix3d& information() const { return information_; }
 
  private:

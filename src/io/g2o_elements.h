@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/text.h"
 #include "semantic_mht_slam/io/g2o_file.h"
 
@@ -43,12 +43,11 @@ Eigen::Matrix<double, kSize, kSize> readUpperTriangle(G2oLine& line) {
   return matrix;
 }
 
-template <class Matrix>
-bool isPositiveDefinite(const Matrix& matrix) {
-  const Eigen::LLT<Matrix> factor(matrix);
-  if (factor.info() != Eigen::Success) return false;
+inline bool isPositiveDefinite(const Eigen::MatrixXd& matrix) {
+  const auto factor = choleskyOf(matrix);
+  if (!factor) return false;
   for (int i = 0; i < matrix.rows(); ++i) {
-    const double pivot = factor.matrixLLT()(i, i);
+    const double pivot = factor->matrixLLT()(i, i);
     if (!(pivot * pivot > kRelativePivot * matrix(i, i))) return false;
   }
   return true;
@@ -61,15 +60,16 @@ Eigen::Matrix<double, kSize, kSize> readInformation(G2oLine& line, BadInformatio
   const Matrix matrix = readUpperTriangle<kSize>(line);
   line.finish();
   if (isPositiveDefinite(matrix)) return matrix;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(matrix);
-  const double largest = eigen.eigenvalues().maxCoeff();
+  const SymmetricEigen eigen = symmetricEigen(matrix);
+  const double largest = eigen.values.maxCoeff();
   if (policy == BadInformation::kRefuse || !(largest > 0.0)) {
     line.fail("the information matrix is not positive definite (smallest eigenvalue " +
-              formatDouble(eigen.eigenvalues().minCoeff()) + ")");
+              formatDouble(eigen.values.minCoeff()) + ")");
   }
   file.projected_edges.push_back(line.name());
-  const Eigen::Matrix<double, kSize, 1> raised = eigen.eigenvalues().cwiseMax(kProjectedEigenvalue * largest);
-  const Matrix repaired = eigen.eigenvectors() * raised.asDiagonal() * eigen.eigenvectors().transpose();
+  const Eigen::Matrix<double, kSize, 1> raised = eigen.values.cwiseMax(kProjectedEigenvalue * largest);
+  const Matrix vectors = eigen.vectors;
+  const Matrix repaired = vectors * raised.asDiagonal() * vectors.transpose();
   return 0.5 * (repaired + repaired.transpose());
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/log_math.h"
 
 namespace semantic_mht_slam {
@@ -145,7 +145,7 @@ double AssociationModel::distanceSigma(const TrackedLandmark& landmark, const Me
                                        double driven_m) const {
   const Eigen::Matrix3d cov = innovationCov(landmark, noiseOfObject(measurement, landmark.mostLikelyClass()), driven_m);
   const Eigen::Vector3d d = measurement.position_m - landmark.position.mean_m;
-  return std::sqrt(std::max(0.0, d.dot(cov.ldlt().solve(d))));
+  return std::sqrt(std::max(0.0, d.dot(solved(cov, d))));
 }
 
 void AssociationModel::collectReachable(const MapHypothesis& hypothesis, const std::vector<Measurement>& measurements,

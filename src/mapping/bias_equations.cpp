@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -53,9 +55,9 @@ class StretchEquations {
     BiasInformation all = normalEquations();
     all.matrix.topLeftCorner(layout_.size(), layout_.size()) += prior.matrix;
     all.vector.head(layout_.size()) += prior.vector;
-    const Eigen::LLT<Eigen::MatrixXd> factor(all.matrix);
-    if (factor.info() != Eigen::Success) return false;
-    const Eigen::VectorXd x = factor.solve(all.vector);
+    const auto factor = choleskyOf(all.matrix);
+    if (!factor) return false;
+    const Eigen::VectorXd x = factor->solve(all.vector);
     for (LandmarkRows& landmark : landmarks_) reweigh(landmark.rows, x);
     return true;
   }

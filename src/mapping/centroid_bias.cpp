@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
+
+#include "semantic_mht_slam/common/dense_solvers.h"
 
 #include "bias_equations.h"
 
@@ -138,9 +139,9 @@ void CentroidBias::adopt(const std::vector<int>& place, const Eigen::MatrixXd& i
 
 /// False, and the solution stays as it was, if the information has none.
 bool CentroidBias::solve() {
-  const Eigen::LLT<Eigen::MatrixXd> factor(information_);
-  if (factor.info() != Eigen::Success) return false;
-  cov_ = factor.solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
+  const auto factor = choleskyOf(information_);
+  if (!factor) return false;
+  cov_ = factor->solve(Eigen::MatrixXd::Identity(information_.rows(), information_.cols()));
   mean_ = cov_ * vector_;
   return true;
 }

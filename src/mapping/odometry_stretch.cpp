@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
+
 #include "track_equations.h"
 
 namespace semantic_mht_slam {
@@ -39,29 +41,45 @@ std::vector<MotionVariance> variancesOf(const std::vector<Motion>& motion, const
   return result;
 }
 
+/// J^T W J with the diagonal W of `weights`. Products are evaluated one by one here: an expression of three takes the
+/// compiler seconds.
+Eigen::MatrixXd normalMatrix(const Eigen::MatrixXd& J, const Eigen::VectorXd& weights) {
+  const Eigen::MatrixXd weighted = J.transpose() * weights.asDiagonal();
+  return weighted * J;
+}
+
 /// Information on the steps' errors e = e0 + E x from that on the poses' errors x around x = 0, where `odometry` is
 /// the information of the odometry on e. The detections are as noisy as their residuals are. Empty if they do not fit
 /// at all.
 StepInformation stepInformation(const Equations& seen, const Eigen::VectorXd& odometry, const Eigen::MatrixXd& E,
                                 const Eigen::VectorXd& e0) {
   const Eigen::Index size = e0.size();
-  const Eigen::MatrixXd A = E.inverse();
+  const Eigen::MatrixXd A = inverted(E);
   const Eigen::MatrixXd H = seen.H.topLeftCorner(size, size);
   const Eigen::VectorXd g = seen.g.head(size);
-  const Eigen::LDLT<Eigen::MatrixXd> solver(H + E.transpose() * odometry.asDiagonal() * E);
-  const double fitted = solver.solve(H).trace();  // parameters that the detections decided
-  const Eigen::VectorXd x = -solver.solve(g + E.transpose() * odometry.cwiseProduct(e0));
+  const Eigen::LDLT<Eigen::MatrixXd> solver(H + normalMatrix(E, odometry));
+  const double fitted = Eigen::MatrixXd(solver.solve(H)).trace();  // parameters that the detections decided
+  const Eigen::VectorXd weighted_e0 = odometry.cwiseProduct(e0);
+  const Eigen::VectorXd gradient = g + E.transpose() * weighted_e0;
+  const Eigen::VectorXd x = -solver.solve(gradient);
   const double squares = seen.squares + 2.0 * g.dot(x) + x.dot(H * x);
   const double freedom = std::max(0.0, seen.freedom - fitted);
   const double excess = (squares + kNoiseFreedom) / (freedom + kNoiseFreedom);
   if (!(excess < kMostExcess)) return {};
   StepInformation result;
-  result.matrix = A.transpose() * H * A / excess;
-  result.matrix = 0.5 * (result.matrix + result.matrix.transpose()).eval();
-  result.vector = result.matrix * e0 - A.transpose() * g / excess;
-  result.coupling = A.transpose() * seen.H.topRightCorner(size, kRangeErrors) / excess;
+  const Eigen::MatrixXd At_H = A.transpose() * H;
+  const Eigen::MatrixXd At_H_A = At_H * A;
+  const Eigen::MatrixXd of_steps = At_H_A / excess;
+  result.matrix = 0.5 * (of_steps + of_steps.transpose());
+  const Eigen::VectorXd At_g = A.transpose() * g;
+  result.vector = result.matrix * e0;
+  result.vector -= At_g / excess;
+  const Eigen::MatrixXd with_ranges = seen.H.topRightCorner(size, kRangeErrors);
+  const Eigen::MatrixXd At_with_ranges = A.transpose() * with_ranges;
+  result.coupling = At_with_ranges / excess;
   result.range_matrix = seen.H.bottomRightCorner(kRangeErrors, kRangeErrors) / excess;
-  result.range_vector = result.coupling.transpose() * e0 - seen.g.tail(kRangeErrors) / excess;
+  result.range_vector = result.coupling.transpose() * e0;
+  result.range_vector -= seen.g.tail(kRangeErrors) / excess;
   if (!result.matrix.allFinite() || !result.vector.allFinite() || !result.coupling.allFinite()) return {};
   return result;
 }
@@ -93,11 +111,12 @@ class PlanarStretch {
       const Eigen::MatrixXd E = jacobian();
       const Eigen::VectorXd weights = variance_.cwiseInverse();
       const Eigen::Index size = weights.size();
-      const Eigen::MatrixXd H = seen.H.topLeftCorner(size, size) + E.transpose() * weights.asDiagonal() * E;
-      const Eigen::VectorXd g = seen.g.head(size) + E.transpose() * weights.cwiseProduct(errors());
-      const Eigen::LLT<Eigen::MatrixXd> factor(H);
-      if (factor.info() != Eigen::Success) return false;
-      const Eigen::VectorXd x = factor.solve(-g);
+      const Eigen::MatrixXd H = seen.H.topLeftCorner(size, size) + normalMatrix(E, weights);
+      const Eigen::VectorXd weighted_errors = weights.cwiseProduct(errors());
+      const Eigen::VectorXd g = seen.g.head(size) + E.transpose() * weighted_errors;
+      const auto factor = choleskyOf(H);
+      if (!factor) return false;
+      const Eigen::VectorXd x = factor->solve(-g);
       if (!x.allFinite()) return false;
       for (Eigen::Index k = 0; k < steps_; ++k) poses_[static_cast<std::size_t>(k) + 1] += x.segment<3>(3 * k);
     }

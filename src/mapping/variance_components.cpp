@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+
+#include "semantic_mht_slam/common/dense_solvers.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -47,17 +47,17 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
       (stretch.design * log_variance_.array().exp().matrix()).cwiseMax(kLeastComponentVariance);
   Eigen::MatrixXd posterior = H;
   posterior.diagonal() += variance.cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factor(posterior);
-  if (factor.info() != Eigen::Success) return false;
+  const auto factor = choleskyOf(posterior);
+  if (!factor) return false;
   // Precision of what was measured of the errors, V^-1 = H - H (H + Q^-1)^-1 H, and V^-1 y.
-  const Eigen::MatrixXd whitened = factor.matrixL().solve(H);
+  const Eigen::MatrixXd whitened = factor->matrixL().solve(H);
   Eigen::MatrixXd V_inverse = H;
   V_inverse.noalias() -= whitened.transpose() * whitened;
-  const Eigen::VectorXd V_inverse_y = stretch.vector - H * factor.solve(stretch.vector);
+  const Eigen::VectorXd V_inverse_y = stretch.vector - H * factor->solve(stretch.vector);
   // What a unit of each coefficient adds to V^-1 y, and what they are known by.
   const Eigen::Index effects = stretch.effect.cols();
   const Eigen::Index nuisances = stretch.coupling.cols();
-  const Eigen::MatrixXd solved = nuisances > 0 ? factor.solve(stretch.coupling).eval() : stretch.coupling;
+  const Eigen::MatrixXd solved = nuisances > 0 ? factor->solve(stretch.coupling).eval() : stretch.coupling;
   Eigen::MatrixXd response(H.rows(), effects + nuisances);
   response.leftCols(effects) = V_inverse * stretch.effect;
   response.rightCols(nuisances) = stretch.coupling - H * solved;
@@ -75,7 +75,7 @@ bool VarianceComponents::score(const ErrorInformation& stretch, Score& score) co
   score.effect_vector.resize(effects + nuisances);
   score.effect_vector.head(effects) = stretch.effect.transpose() * V_inverse_y;
   score.effect_vector.tail(nuisances) =
-      stretch.nuisance_vector - stretch.coupling.transpose() * factor.solve(stretch.vector);
+      stretch.nuisance_vector - stretch.coupling.transpose() * factor->solve(stretch.vector);
   return score.gradient.allFinite() && score.fisher.allFinite() && score.effect_vector.allFinite();
 }
 
@@ -93,12 +93,12 @@ void VarianceComponents::fit() {
       effect_information += of.effect_information;
       effect_vector += of.effect_vector;
     }
-    const Eigen::MatrixXd uncertainty = fisher.inverse();
+    const Eigen::MatrixXd uncertainty = inverted(fisher);
     const Eigen::VectorXd step = uncertainty * gradient;
     log_variance_ += step / std::max(1.0, step.cwiseAbs().maxCoeff() / kLargestStep);
     log_uncertainty_ = uncertainty.diagonal();
     if (effect_.size() > 0) {
-      effect_cov_ = effect_information.inverse();
+      effect_cov_ = inverted(effect_information);
       effect_ = effect_cov_ * effect_vector;
     }
     if ((step.array().square() <= kSettled * kSettled * uncertainty.diagonal().array()).all()) return;
@@ -111,7 +111,7 @@ void VarianceComponents::forgetOldest() {
   if (score(stretches_.front(), of)) {
     const Eigen::VectorXd vector = prior_precision_ * prior_mean_ + of.fisher * log_variance_ + of.gradient;
     prior_precision_ += of.fisher;
-    prior_mean_ = prior_precision_.inverse() * vector;
+    prior_mean_ = inverted(prior_precision_) * vector;
     effect_information_ += of.effect_information;
     effect_vector_ += of.effect_vector;
   }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
 
+#include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/gaussian.h"
 #include "semantic_mht_slam/common/text.h"
@@ -78,12 +78,11 @@ void requireUsable(const RequestedClosure& closure) {
   if (!closure.T_match_query.isValid() || closure.T_match_query.translation_m.cwiseAbs().maxCoeff() > kFarthest_m) {
     throw InputError("the transform of a closure is not finite, beyond 1e7 m, or its quaternion has no unit norm");
   }
-  const Eigen::LLT<FixedAxesCov> llt(closure.cov);
-  if (!closure.cov.allFinite() || (!closure.cov.isZero(0.0) && llt.info() != Eigen::Success)) {
+  if (!closure.cov.allFinite() || (!closure.cov.isZero(0.0) && !choleskyOf(closure.cov))) {
     throw InputError("the covariance of a closure is not positive definite; all zero means not known");
   }
   if (closure.cov.isZero(0.0)) return;
-  const FixedAxesCov information = closure.cov.inverse();
+  const FixedAxesCov information = inverted(closure.cov);
   if (!(information.array().abs() <= kMostInformation).all() ||
       closure.cov.diagonal().maxCoeff() > kFarthest_m * kFarthest_m) {
     throw InputError("the standard deviations of a closure are below 1e-6 or beyond 1e7 m or rad");

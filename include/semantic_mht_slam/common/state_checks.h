@@ -20,21 +20,11 @@ bool areProbabilities(const Probs& probs) {
   return probs.size() > 0 && (probs >= 0.0).all() && std::abs(probs.sum() - 1.0) < kRounding;
 }
 
-/// A covariance, or an information matrix, that has an inverse. Of these sizes alone, compiled once: what solves them
-/// is a second or more of every file that needs it.
-template <class Matrix>
-bool isPositive(const Matrix& matrix);
-extern template bool isPositive(const Eigen::Matrix2d&);
-extern template bool isPositive(const Eigen::Matrix3d&);
-extern template bool isPositive(const Eigen::Matrix4d&);
-extern template bool isPositive(const Eigen::Matrix<double, 6, 6>&);
-extern template bool isPositive(const Eigen::MatrixXd&);
+/// A covariance, or an information matrix, that has an inverse.
+bool isPositive(const Eigen::MatrixXd& matrix);
 
 /// The same without one, up to rounding.
-template <class Matrix>
-bool isNotNegative(const Matrix& matrix);
-extern template bool isNotNegative(const Eigen::Matrix<double, 6, 6>&);
-extern template bool isNotNegative(const Eigen::MatrixXd&);
+bool isNotNegative(const Eigen::MatrixXd& matrix);
 
 /// The upper square root of an information matrix.
 template <class Matrix>
