@@ -30,7 +30,7 @@ constexpr int kReadmissionRounds = 3;
 constexpr int kPlainIterations = 10;
 
 /// Levenberg-Marquardt that starts as Gauss-Newton: from a good guess the first full step is right, and a step that is
-/// not is damped as usual. Every figure behind these choices is in docs/pose_graph.md.
+/// not is damped as usual. Every figure behind these choices is in docs/decisions.md.
 ceres::Solver::Options solverOptions(const BatchOptions& options) {
   ceres::Solver::Options result;
   result.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;

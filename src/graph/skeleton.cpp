@@ -125,7 +125,7 @@ Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
   const auto backup = blocks_;
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // Half the time of CHOLMOD on a few hundred hubs (docs/pose_graph.md).
+  // Half the time of CHOLMOD on a few hundred hubs (docs/decisions.md).
   if (ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::EIGEN_SPARSE)) {
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   }

@@ -115,8 +115,7 @@ void OdometryLearning::readOff() {
   SystematicErrors& errors = model_.systematic;
   CoefficientEstimate* const all[] = {&errors.scale_translation, &errors.scale_turn, &errors.heading_rad_per_m,
                                       &errors.direction_m_per_m, &errors.lever_m_per_rad};
-  for (Eigen::Index i = 0; i < mean.size() - kRangeErrors; ++i) *all[i] = {mean[i], stddev[i]};
-  errors.scale_translation = beyondUncertainty(errors.scale_translation);
+  for (Eigen::Index i = 0; i < mean.size() - kRangeErrors; ++i) *all[i] = beyondUncertainty({mean[i], stddev[i]});
 }
 
 }  // namespace semantic_mht_slam
