@@ -126,7 +126,7 @@ TEST(OdometryLearningTest, AScaleIsAppliedAsFarAsItExceedsItsDoubt) {
 TEST(OdometryLearningTest, WhatTheFirstStretchesCannotTellIsNotApplied) {
   int applied = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const SystematicErrors& errors = learnedFrom(visual(), 3, seed).model().systematic;
+    const SystematicErrors errors = learnedFrom(visual(), 3, seed).model().systematic;
     applied += errors.scale_turn.mean != 0.0;
     applied += errors.heading_rad_per_m.mean != 0.0;
   }
