@@ -5,7 +5,6 @@
 #include <numeric>
 #include <set>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/state_checks.h"

@@ -4,7 +4,6 @@
 #include <deque>
 #include <numeric>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 
 #include "pose_block.h"

@@ -1,6 +1,5 @@
 #include "semantic_mht_slam/graph/loop_consistency.h"
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/max_clique.h"
 

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/graph/batch_graph.h"
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/gaussian.h"
 #include "semantic_mht_slam/graph/pose_graph.h"

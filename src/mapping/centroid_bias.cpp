@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 
 #include "bias_equations.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 
 namespace semantic_mht_slam {

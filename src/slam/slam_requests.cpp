@@ -2,7 +2,6 @@
 #include <cmath>
 #include <utility>
 
-
 #include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/gaussian.h"
