@@ -3,7 +3,11 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <string_view>
+#include <utility>
+
+#include <rosbag/chunked_file.h>
 
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/existing_path.h"
@@ -19,6 +23,8 @@ constexpr std::uint64_t kMostMade = 12;
 constexpr std::uint64_t kSmallMade = 32U << 20U;
 constexpr std::uint64_t kMostHeader = 1U << 20U;
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
+constexpr char kMessage = 2;
+constexpr char kIndex = 4;
 constexpr char kChunk = 5;
 
 std::uint32_t numberAt(const char* bytes) {
@@ -42,6 +48,114 @@ std::string_view fieldOf(std::string_view header, std::string_view name) {
   return {};
 }
 
+/// Goes through the records of a bag from first to last.
+class BagCheck {
+ public:
+  explicit BagCheck(const std::string& path)
+      : path_(path), size_(sizeOfFile(path)), file_(path, std::ios::binary), place_(kMagic.size()) {}
+
+  void run() {
+    std::string magic(kMagic.size(), ' ');
+    file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+    if (!file_ || magic != kMagic) throw InputError(path_ + ": truncated, or no map file at all");
+    while (place_ < size_) take(next());
+  }
+
+ private:
+  struct Record {
+    std::string header;
+    std::string data;
+    char op() const {
+      const std::string_view op = fieldOf(header, "op");
+      return op.size() == 1 ? op[0] : '\0';
+    }
+  };
+
+  [[noreturn]] void fail(const char* problem) const { throw InputError(path_ + ": damaged: " + problem); }
+
+  std::string read(std::uint64_t most) {
+    std::array<char, 4> bytes{};
+    file_.read(bytes.data(), bytes.size());
+    place_ += bytes.size();
+    const std::uint64_t length = file_ ? numberAt(bytes.data()) : 0;
+    if (!file_ || length > size_ - place_) throw InputError(path_ + ": the file is truncated");
+    if (length > most) fail("a record without an end");
+    std::string result(length, ' ');
+    file_.read(result.data(), static_cast<std::streamsize>(length));
+    place_ += length;
+    return result;
+  }
+
+  Record next() {
+    std::string header = read(kMostHeader);
+    return {std::move(header), read(size_)};
+  }
+
+  void take(const Record& record) {
+    if (record.op() == kChunk) {
+      connection_of_message_ = messagesOf(record);
+    } else if (record.op() == kIndex) {
+      checkIndex(record);
+    }
+  }
+
+  /// Connections of the messages of a chunk, by their places in it.
+  std::map<std::uint32_t, std::string> messagesOf(const Record& chunk) const {
+    const std::string_view size = fieldOf(chunk.header, "size");
+    if (size.size() != 4 || numberAt(size.data()) > mostContent(size_)) {
+      fail("a chunk claims more content than there can be");
+    }
+    const std::string content = contentOf(chunk, numberAt(size.data()));
+    std::map<std::uint32_t, std::string> result;
+    const auto lengthAt = [&](std::size_t at) -> std::size_t {
+      if (content.size() - at < 4 || numberAt(&content[at]) > content.size() - at - 4)
+        fail("a chunk holds no messages");
+      return numberAt(&content[at]);
+    };
+    for (std::size_t at = 0; at < content.size();) {
+      const std::string_view header(&content[at] + 4, lengthAt(at));
+      if (fieldOf(header, "op") == std::string_view(&kMessage, 1)) {
+        result[static_cast<std::uint32_t>(at)] = fieldOf(header, "conn");
+      }
+      at += 4 + header.size();
+      at += 4 + lengthAt(at);
+    }
+    return result;
+  }
+
+  static std::string contentOf(const Record& chunk, std::size_t size) {
+    const std::string_view name = fieldOf(chunk.header, "compression");
+    const auto compression = name == "bz2"   ? rosbag::compression::BZ2
+                             : name == "lz4" ? rosbag::compression::LZ4
+                                             : rosbag::compression::Uncompressed;
+    std::string compressed = chunk.data;  // the reader's argument is not const
+    std::string content(size, '\0');
+    rosbag::ChunkedFile().decompress(
+        compression, reinterpret_cast<std::uint8_t*>(content.data()), static_cast<unsigned int>(content.size()),
+        reinterpret_cast<std::uint8_t*>(compressed.data()), static_cast<unsigned int>(compressed.size()));
+    return content;
+  }
+
+  /// rosbag goes where the index says, and crashes where no message begins.
+  void checkIndex(const Record& index) const {
+    constexpr std::size_t kTime = 8;
+    constexpr std::size_t kEntry = kTime + 4;
+    if (index.data.size() % kEntry != 0) fail("an index that ends inside an entry");
+    for (std::size_t at = 0; at < index.data.size(); at += kEntry) {
+      const auto message = connection_of_message_.find(numberAt(&index.data[at + kTime]));
+      if (message == connection_of_message_.end() || message->second != fieldOf(index.header, "conn")) {
+        fail("its index leads to no message");
+      }
+    }
+  }
+
+  const std::string& path_;
+  std::uint64_t size_;
+  std::ifstream file_;
+  std::uint64_t place_;
+  std::map<std::uint32_t, std::string> connection_of_message_;  ///< of the chunk before
+};
+
 }  // namespace
 
 std::uint64_t mostContent(std::uint64_t file_size) {
@@ -52,36 +166,8 @@ std::uint64_t mostMemory(std::uint64_t file_size) {
   return kSmallMade + kMostMade * file_size;
 }
 
-void requireModestBag(const std::string& path) {
-  const std::uint64_t size = sizeOfFile(path);
-  std::ifstream file(path, std::ios::binary);
-  std::string magic(kMagic.size(), ' ');
-  file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (!file || magic != kMagic) throw InputError(path + ": truncated, or no map file at all");
-  std::uint64_t place = kMagic.size();
-  const auto length = [&] {
-    std::array<char, 4> bytes{};
-    file.read(bytes.data(), bytes.size());
-    place += bytes.size();
-    const std::uint64_t number = file ? numberAt(bytes.data()) : 0;
-    if (!file || number > size - place) throw InputError(path + ": the file is truncated");
-    return number;
-  };
-  while (place < size) {
-    const std::uint64_t header_length = length();
-    if (header_length > kMostHeader) throw InputError(path + ": damaged: a record without an end");
-    std::string header(header_length, ' ');
-    file.read(header.data(), static_cast<std::streamsize>(header_length));
-    place += header_length;
-    const std::string_view op = fieldOf(header, "op");
-    const std::string_view content = fieldOf(header, "size");
-    const bool is_chunk = op.size() == 1 && op[0] == kChunk;
-    if (is_chunk && (content.size() != 4 || numberAt(content.data()) > mostContent(size))) {
-      throw InputError(path + ": damaged: a chunk claims more content than there can be");
-    }
-    place += length();
-    file.seekg(static_cast<std::streamoff>(place));
-  }
+void requireSoundBag(const std::string& path) {
+  BagCheck(path).run();
 }
 
 }  // namespace semantic_mht_slam

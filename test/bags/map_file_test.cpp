@@ -202,6 +202,24 @@ TEST_F(MapFileTest, DamageIsRefusedOrWithoutEffect) {
   EXPECT_GT(refused, 100);
 }
 
+TEST_F(MapFileTest, AnIndexThatLeadsToNoMessageIsRefused) {
+  const std::string content = readFile(path_);
+  const std::string damaged = folder_ / "damaged.bag";
+  const std::string begin = std::string("op=\x04") + std::string({4 + 4, 0, 0, 0}) + "ver=";
+  int entries = 0;
+  for (std::size_t at = content.find(begin); at != std::string::npos; at = content.find(begin, at + 1)) {
+    const std::size_t offset = at + begin.size() + 4 + 4 + 8;  // behind version, length of the data, time
+    for (const int bit : {0, 5, 13, 31}) {
+      std::string bytes = content;
+      bytes.at(offset + static_cast<std::size_t>(bit / 8)) ^= static_cast<char>(1U << (bit % 8));
+      std::ofstream(damaged, std::ios::binary) << bytes;
+      expectInputError([&] { read(damaged); }, {damaged, "its index leads to no message"});
+    }
+    ++entries;
+  }
+  EXPECT_GT(entries, 1);
+}
+
 TEST_F(MapFileTest, AChunkThatClaimsMoreThanThereCanBeIsRefusedBeforeMemoryIsTaken) {
   const std::string hungry = folder_ / "hungry.bag";
   writeFileAtomically(hungry, withLargeChunk());
