@@ -12,8 +12,8 @@ std::uint64_t mostContent(std::uint64_t file_size);
 std::uint64_t mostMemory(std::uint64_t file_size);
 
 /// Throws InputError unless the records of a bag lie inside the file, no chunk of it claims to hold more than
-/// `mostContent`, and its index leads to its messages: rosbag takes the memory that a chunk claims, and reads wherever the
-/// index says. Throws rosbag::BagException where a chunk cannot be decompressed.
+/// `mostContent`, and its index leads to its messages: rosbag takes the memory that a chunk claims, and reads wherever
+/// the index says. Throws rosbag::BagException where a chunk cannot be decompressed.
 void requireSoundBag(const std::string& path);
 
 }  // namespace semantic_mht_slam
