@@ -51,8 +51,13 @@ std::string_view fieldOf(std::string_view header, std::string_view name) {
 /// Goes through the records of a bag from first to last.
 class BagCheck {
  public:
-  explicit BagCheck(const std::string& path)
-      : path_(path), size_(sizeOfFile(path)), file_(path, std::ios::binary), place_(kMagic.size()) {}
+  /// The index is followed only where there is a `keep_reading`: that decompresses the bag.
+  BagCheck(const std::string& path, KeepReading keep_reading)
+      : path_(path),
+        size_(sizeOfFile(path)),
+        file_(path, std::ios::binary),
+        place_(kMagic.size()),
+        keep_reading_(std::move(keep_reading)) {}
 
   void run() {
     std::string magic(kMagic.size(), ' ');
@@ -91,21 +96,22 @@ class BagCheck {
     return {std::move(header), read(size_)};
   }
 
-  void take(const Record& record) {
+  void take(Record record) {
     if (record.op() == kChunk) {
-      connection_of_message_ = messagesOf(record);
-    } else if (record.op() == kIndex) {
+      const std::string_view size = fieldOf(record.header, "size");
+      if (size.size() != 4 || numberAt(size.data()) > mostContent(size_)) {
+        fail("a chunk claims more content than there can be");
+      }
+      if (!keep_reading_) return;
+      if (!keep_reading_()) throw InputError(path_ + ": reading was given up");
+      connection_of_message_ = messagesOf(contentOf(record, numberAt(size.data())));
+    } else if (record.op() == kIndex && keep_reading_) {
       checkIndex(record);
     }
   }
 
   /// Connections of the messages of a chunk, by their places in it.
-  std::map<std::uint32_t, std::string> messagesOf(const Record& chunk) const {
-    const std::string_view size = fieldOf(chunk.header, "size");
-    if (size.size() != 4 || numberAt(size.data()) > mostContent(size_)) {
-      fail("a chunk claims more content than there can be");
-    }
-    const std::string content = contentOf(chunk, numberAt(size.data()));
+  std::map<std::uint32_t, std::string> messagesOf(const std::string& content) const {
     std::map<std::uint32_t, std::string> result;
     const auto lengthAt = [&](std::size_t at) -> std::size_t {
       if (content.size() - at < 4 || numberAt(&content[at]) > content.size() - at - 4)
@@ -123,16 +129,16 @@ class BagCheck {
     return result;
   }
 
-  static std::string contentOf(const Record& chunk, std::size_t size) {
+  /// rosbag's reader takes no const bytes.
+  static std::string contentOf(Record& chunk, std::size_t size) {
     const std::string_view name = fieldOf(chunk.header, "compression");
     const auto compression = name == "bz2"   ? rosbag::compression::BZ2
                              : name == "lz4" ? rosbag::compression::LZ4
                                              : rosbag::compression::Uncompressed;
-    std::string compressed = chunk.data;  // the reader's argument is not const
     std::string content(size, '\0');
     rosbag::ChunkedFile().decompress(
         compression, reinterpret_cast<std::uint8_t*>(content.data()), static_cast<unsigned int>(content.size()),
-        reinterpret_cast<std::uint8_t*>(compressed.data()), static_cast<unsigned int>(compressed.size()));
+        reinterpret_cast<std::uint8_t*>(chunk.data.data()), static_cast<unsigned int>(chunk.data.size()));
     return content;
   }
 
@@ -153,6 +159,7 @@ class BagCheck {
   std::uint64_t size_;
   std::ifstream file_;
   std::uint64_t place_;
+  KeepReading keep_reading_;
   std::map<std::uint32_t, std::string> connection_of_message_;  ///< of the chunk before
 };
 
@@ -166,8 +173,12 @@ std::uint64_t mostMemory(std::uint64_t file_size) {
   return kSmallMade + kMostMade * file_size;
 }
 
-void requireSoundBag(const std::string& path) {
-  BagCheck(path).run();
+void requireSoundRecords(const std::string& path) {
+  BagCheck(path, {}).run();
+}
+
+void requireSoundBag(const std::string& path, const KeepReading& keep_reading) {
+  BagCheck(path, keep_reading).run();
 }
 
 }  // namespace semantic_mht_slam

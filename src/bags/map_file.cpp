@@ -124,7 +124,7 @@ class MapReader {
 
   LoadedMap read() {
     try {
-      requireSoundBag(path_);
+      requireSoundBag(path_, keep_reading_);
       rosbag::Bag bag(path_, rosbag::bagmode::Read);
       const MapHeader header = readHeader(bag);
       check(header);
@@ -230,7 +230,7 @@ void requireMapOrNothing(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
   try {
-    requireSoundBag(path);
+    requireSoundRecords(path);
     const rosbag::Bag bag(path, rosbag::bagmode::Read);
     if (hasMapHeader(bag)) return;
   } catch (const InputError&) {  // no bag, or one that would take the memory

@@ -9,13 +9,6 @@
 
 namespace semantic_mht_slam {
 
-/// Upper triangular U with U^T U = information, so that |U e|^2 = e^T information e. (`matrixL` in its place weights
-/// the wrong directions as soon as the matrix is not diagonal.)
-template <class Matrix>
-Matrix squareRootInformation(const Matrix& information) {
-  return upperSquareRoot(information);
-}
-
 /// The upper square root of an information matrix itself, for a cost that is made again from what it was.
 template <class Matrix>
 struct SquareRoot {
@@ -29,7 +22,7 @@ using RowMajor = Eigen::Matrix<double, kRows, kCols, (kCols == 1 ? Eigen::ColMaj
 class RelativePose2Cost final : public ceres::SizedCostFunction<3, 3, 3> {
  public:
   RelativePose2Cost(const Pose2& measured, const Eigen::Matrix3d& information)
-      : measured_(measured), sqrt_info_(squareRootInformation(information)) {}
+      : measured_(measured), sqrt_info_(upperSquareRoot(information)) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const auto relative = relativeError(blocks[0], blocks[1], measured_);
@@ -50,7 +43,7 @@ class RelativePose2Cost final : public ceres::SizedCostFunction<3, 3, 3> {
 class RelativePose3Cost final : public ceres::SizedCostFunction<6, 7, 7> {
  public:
   RelativePose3Cost(const Pose& measured, const Matrix6d& information)
-      : measured_(measured), sqrt_info_(squareRootInformation(information)) {}
+      : measured_(measured), sqrt_info_(upperSquareRoot(information)) {}
   RelativePose3Cost(const Pose& measured, const SquareRoot<Matrix6d>& root)
       : measured_(measured), sqrt_info_(root.upper) {}
 
@@ -87,7 +80,7 @@ class PointCost final : public ceres::SizedCostFunction<kDim, (kDim == 2 ? 3 : 7
   static constexpr int kDof = kDim == 2 ? 3 : 6;
 
   PointCost(const Point& measured_m, const Matrix& information)
-      : measured_m_(measured_m), sqrt_info_(squareRootInformation(information)) {}
+      : measured_m_(measured_m), sqrt_info_(upperSquareRoot(information)) {}
   PointCost(const Point& measured_m, const SquareRoot<Matrix>& root)
       : measured_m_(measured_m), sqrt_info_(root.upper) {}
 
@@ -118,7 +111,7 @@ class PointCost final : public ceres::SizedCostFunction<kDim, (kDim == 2 ? 3 : 7
 class PointPriorCost final : public ceres::SizedCostFunction<3, 3> {
  public:
   PointPriorCost(const Eigen::Vector3d& expected_m, const Eigen::Matrix3d& information)
-      : expected_m_(expected_m), sqrt_info_(squareRootInformation(information)) {}
+      : expected_m_(expected_m), sqrt_info_(upperSquareRoot(information)) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     Eigen::Map<Eigen::Vector3d>(residuals).noalias() =

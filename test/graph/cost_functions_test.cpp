@@ -109,7 +109,7 @@ TEST_P(CostFunctionTest, SpatialErrorAndDerivativesEqualAutomaticOnes) {
     error[i] = automatic[i].a;
     derivative.row(i) = automatic[i].v.transpose();
   }
-  const Matrix6d root = squareRootInformation(information);
+  const Matrix6d root = upperSquareRoot(information);
   EXPECT_TRUE(whitened.isApprox(root * error, 1e-10));
   EXPECT_TRUE((by_from.leftCols<6>().isApprox(root * derivative.leftCols<6>(), 1e-9)));
   EXPECT_TRUE((by_to.leftCols<6>().isApprox(root * derivative.rightCols<6>(), 1e-9)));

@@ -17,7 +17,7 @@ Eigen::MatrixXd inverted(const Eigen::MatrixXd& matrix);
 Eigen::Vector3d solved(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& b);
 Eigen::Matrix<double, 6, 1> solved(const Eigen::Matrix<double, 6, 6>& matrix, const Eigen::Matrix<double, 6, 1>& b);
 
-/// Upper triangular U with U^T U = `matrix`, which is symmetric and positive definite.
+/// Upper triangular U with U^T U = `matrix`, which is symmetric and positive definite: |U e|^2 = e^T matrix e.
 Eigen::Matrix2d upperSquareRoot(const Eigen::Matrix2d& matrix);
 Eigen::Matrix3d upperSquareRoot(const Eigen::Matrix3d& matrix);
 Eigen::Matrix<double, 6, 6> upperSquareRoot(const Eigen::Matrix<double, 6, 6>& matrix);
