@@ -24,7 +24,7 @@ PACKAGES=(
   libgtest-dev libbenchmark-dev
 )
 BENCHMARK_PACKAGES=(python3-matplotlib python3-pandas python3-jinja2)
-TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest catkin-lint)
+TEST_PACKAGES=("${BENCHMARK_PACKAGES[@]}" python3-pytest catkin-lint slurm-wlm parallel)
 INSTRUMENTED_PACKAGES=(clang llvm)
 
 PACKAGE_LIST=/var/lib/dpkg/status

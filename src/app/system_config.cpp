@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "semantic_mht_slam/app/map_server_config.h"
 #include "semantic_mht_slam/app/object_extractor_config.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/existing_path.h"
@@ -123,6 +124,9 @@ std::string parameterReference() {
   SegmentationNodeConfig segmentation;
   Fields segmentation_fields;
   describe(segmentation, segmentation_fields);
+  MapServerConfig server;
+  Fields server_fields;
+  describe(server, server_fields);
   return "<!-- made by the program parameter_reference; do not edit -->\n# Parameters\n\n"
          "Keys of `config/kitti.yaml`, of `slam_offline --set KEY=VALUE` and, as private parameters with `/` in place "
          "of "
@@ -136,7 +140,10 @@ std::string parameterReference() {
          "the "
          "defaults shown are those of classes that\nkeep their place, `config/extraction.yaml` has the others'.\n" +
          toMarkdown(extractor_fields) + "\n# Segmentation\n\nPrivate parameters of `segmentation_node`.\n" +
-         toMarkdown(segmentation_fields);
+         toMarkdown(segmentation_fields) +
+         "\n# Map server\n\nPrivate parameters of `map_server`, beside those of `slam_node` that its maps were made "
+         "with.\n" +
+         toMarkdown(server_fields);
 }
 
 Setting parseOverride(const std::string& text) {

@@ -30,8 +30,10 @@ struct PairClosures {
 class Merging {
  public:
   Merging(std::vector<MergeMap>& maps, const MergeSettings& settings, const MergeConfig& config,
-          const MergeProgress& progress)
-      : maps_(maps), settings_(settings), config_(config), progress_(progress) {}
+          const MergeProgress& progress, PairMemory& memory)
+      : maps_(maps), settings_(settings), config_(config), progress_(progress), memory_(memory) {
+    memory_.expect(settings.range_factor);
+  }
 
   MergeResult run() {
     const double factor = settings_.range_factor;
@@ -52,25 +54,30 @@ class Merging {
     if (progress_) progress_(step);
   }
 
+  const ComparedPair& compare(const MergeMap& a, const MergeMap& b) const {
+    if (const ComparedPair* known = memory_.find(a.name(), b.name())) return *known;
+    say("comparing " + a.name() + " with " + b.name());
+    ComparedPair pair{findOverlap(a, b, settings_, config_), {}};
+    if (pair.overlap.is_decided) {
+      pair.closures = closuresBetween(a, b, pair.overlap.hypotheses.front().anchors, {}, settings_);
+    }
+    return memory_.keep(a.name(), b.name(), std::move(pair));
+  }
+
   void comparePairs() {
     for (std::size_t a = 0; a < maps_.size(); ++a) {
       for (std::size_t b = a + 1; b < maps_.size(); ++b) {
-        say("comparing " + maps_[a].name() + " with " + maps_[b].name());
-        MergedPair pair{a, b, findOverlap(maps_[a], maps_[b], settings_, config_), false, false, 0.0, 0, ""};
+        const ComparedPair& compared = compare(maps_[a], maps_[b]);
+        MergedPair pair{a, b, compared.overlap, false, false, 0.0, 0, ""};
         pair.is_decided = pair.overlap.is_decided;
         pair.reason = pair.overlap.reason;
         pair.posterior = pair.overlap.prob;
         if (!pair.is_decided && pair.posterior >= config_.join_prob) pair.posterior = kDoubtful;
-        PairClosures closures{result_.pairs.size(), a, b, {}};
-        if (pair.is_decided) {
-          const auto& anchors = pair.overlap.hypotheses.front().anchors;
-          closures.records = closuresBetween(maps_[a], maps_[b], anchors, {}, settings_);
-          if (closures.records.size() < kFewestClosures) {
-            pair.is_decided = false;
-            pair.reason = "hardly any keyframe of one is found in the other";
-          }
+        if (pair.is_decided && compared.closures.size() < kFewestClosures) {
+          pair.is_decided = false;
+          pair.reason = "hardly any keyframe of one is found in the other";
         }
-        closures_.push_back(std::move(closures));
+        closures_.push_back({result_.pairs.size(), a, b, compared.closures});
         result_.pairs.push_back(std::move(pair));
       }
     }
@@ -247,6 +254,7 @@ class Merging {
   const MergeSettings& settings_;
   const MergeConfig& config_;
   const MergeProgress& progress_;
+  PairMemory& memory_;
   std::vector<PairClosures> closures_;
   MergeResult result_;
 };
@@ -262,12 +270,13 @@ MergeSettings mergeSettings(const std::vector<MergeMap>& maps, const SlamConfig&
 }
 
 MergeResult mergeMaps(std::vector<MergeMap>& maps, const SlamConfig& config, const ClassTable& classes,
-                      const MergeConfig& merge, const MergeProgress& progress) {
+                      const MergeConfig& merge, const MergeProgress& progress, PairMemory* memory) {
   for (const MergeMap& map : maps) {
     if (map.map().submaps().empty()) throw InputError(map.name() + ": has no finished submap");
   }
   const MergeSettings settings = mergeSettings(maps, config, classes);
-  return Merging(maps, settings, merge, progress).run();
+  PairMemory of_this_time;
+  return Merging(maps, settings, merge, progress, memory == nullptr ? of_this_time : *memory).run();
 }
 
 }  // namespace semantic_mht_slam

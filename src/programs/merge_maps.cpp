@@ -13,7 +13,6 @@
 #include "semantic_mht_slam/io/trajectory_file.h"
 #include "semantic_mht_slam/merging/map_merger.h"
 #include "semantic_mht_slam/slam/slam_parts_state.h"
-#include "semantic_mht_slam/slam/surroundings.h"
 
 #include "landmark_table.h"
 #include "merge_maps_input.h"
@@ -58,15 +57,11 @@ bool parse(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-/// The joined trajectory, cut where the odometry of one map ends and that of the next begins.
-std::vector<MemberResult> membersOf(const JoinedMap& joined, const std::vector<StampedPose>& trajectory) {
+std::vector<MemberResult> membersOf(const JoinedMap& joined) {
   std::vector<MemberResult> members;
-  auto begin = trajectory.begin();
-  for (const JoinedMember& member : joined.members) {
-    const auto count = member.map->parts().sessions.record(member.map->map()).odometry.size();
-    const auto end = begin + static_cast<std::ptrdiff_t>(count);
-    members.push_back({member.map->name(), {begin, end}});
-    begin = end;
+  std::vector<std::vector<StampedPose>> trajectories = trajectoriesOf(joined);
+  for (std::size_t m = 0; m < joined.members.size(); ++m) {
+    members.push_back({joined.members[m].map->name(), std::move(trajectories[m])});
   }
   return members;
 }
@@ -92,14 +87,12 @@ int run(int argc, char** argv) {
   prepareOutputFolder(folder.string());
   const JoinedMap& joined = *result.groups.front().joined;
   const MergeSettings settings = mergeSettings(inputs.maps, inputs.slam_config, inputs.classes);
-  const MapGauge gauge{joined.parts.start_cov, joined.parts.mapper ? joined.parts.mapper->scaleStddev() : 0.0};
-  const MapUncertainty uncertainty = uncertaintyOf(joined.parts.map, joined.parts.graph, gauge);
-  const auto landmarks = landmarksOf(joined.parts.map, joined.parts.graph, uncertainty);
+  const std::vector<MixtureLandmark> landmarks = landmarksOf(joined);
   const auto trajectory = trajectoryOf(joined.parts.sessions.record(joined.parts.map));
   writeMapFile(arguments.output,
                {stateOf(settings.slam, joined.parts), landmarks, trajectory, joined.parts.map.submaps().size()},
                inputs.config, inputs.classes);
-  const std::vector<MemberResult> members = membersOf(joined, trajectory);
+  const std::vector<MemberResult> members = membersOf(joined);
   for (const MemberResult& member : members) {
     if (member.trajectory.empty()) continue;
     writeFileAtomically((folder / fileNameFor(member)).string(), formatTumTrajectory(member.trajectory));

@@ -68,15 +68,21 @@ ClassTable classesOf(const std::vector<std::vector<LandmarkLine>>& files) {
   return ClassTable(classes, "the landmarks");
 }
 
-/// Their file names; the paths if these are not distinct.
+bool areDistinct(const std::vector<std::string>& names) {
+  return std::set<std::string>(names.begin(), names.end()).size() == names.size();
+}
+
+/// Their file names; with the folder, or as they are, if these are not distinct.
 std::vector<std::string> namesOf(const std::vector<std::string>& files) {
+  if (!areDistinct(files)) throw InputError("a map is named twice");
   std::vector<std::string> names;
-  for (const std::string& file : files) names.push_back(std::filesystem::path(file).filename().string());
-  if (std::set<std::string>(names.begin(), names.end()).size() == files.size()) return names;
-  if (std::set<std::string>(files.begin(), files.end()).size() != files.size()) {
-    throw InputError("a map is named twice");
+  std::vector<std::string> with_folder;
+  for (const std::filesystem::path file : files) {
+    names.push_back(file.filename().string());
+    with_folder.push_back((file.parent_path().filename() / file.filename()).string());
   }
-  return files;
+  if (areDistinct(names)) return names;
+  return areDistinct(with_folder) ? with_folder : files;
 }
 
 SlamParts makeLandmarkMap(const std::string& file, const std::vector<LandmarkLine>& lines, const MapInputs& inputs) {

@@ -4,12 +4,15 @@
 #include <map>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/text.h"
 
 namespace semantic_mht_slam {
 namespace {
+
+constexpr double kSymbolsAcross = 250.0;  // symbols of a map beside each other: still seen with all of it in view
 
 std_msgs::ColorRGBA toColor(const ClassInfo& info) {
   const std::array<double, 3> rgb = info.rgb();
@@ -163,6 +166,12 @@ class LandmarkDrawing {
 };
 
 }  // namespace
+
+double symbolSize(double range_factor, const SemanticMap& map) {
+  Eigen::AlignedBox2d box;
+  for (const Landmark& landmark : map.landmarks) box.extend(Eigen::Vector2d(landmark.position.x, landmark.position.y));
+  return box.isEmpty() ? range_factor : std::max(range_factor, box.sizes().maxCoeff() / kSymbolsAcross);
+}
 
 visualization_msgs::MarkerArray toObjectMarkers(const Frame& frame, const Pose& T_map_odom, const ClassTable& classes,
                                                 double symbol_m, const std::string& map_frame) {

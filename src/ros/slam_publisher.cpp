@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <Eigen/Geometry>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Path.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -20,16 +19,8 @@ namespace {
 constexpr double kOdometrySpacing_m = 1.0;
 constexpr double kProvisionalShare = 50.0;   // of the time that making it takes, before it is made again
 constexpr double kProvisionalPause_s = 1.0;  // a map of a town is a large message
-constexpr double kSymbolsAcross = 250.0;     // symbols of a map beside each other: still seen with all of it in view
 constexpr std::uint32_t kAmbiguousQueue = 10;
 constexpr std::uint32_t kClosureQueue = 1000;  // a submap may look at many
-
-/// As large as the detector's range is by the reference's, where a symbol is a metre; larger in a large map.
-double symbolSize(double range_factor, const SemanticMap& map) {
-  Eigen::AlignedBox2d box;
-  for (const Landmark& landmark : map.landmarks) box.extend(Eigen::Vector2d(landmark.position.x, landmark.position.y));
-  return box.isEmpty() ? range_factor : std::max(range_factor, box.sizes().maxCoeff() / kSymbolsAcross);
-}
 
 /// Covariance of a pose that is believed elsewhere than where it is said to be: by as much it is off on purpose.
 FixedAxesCov withGap(const FixedAxesCov& cov, const Pose& believed, const Pose& said) {

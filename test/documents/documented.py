@@ -11,6 +11,7 @@ EXEMPT = {
     "rosdep install --from-paths src --ignore-src -y": "installs packages from the network",
     "catkin_make": "builds everything once more",
     "source devel/setup.bash": "what catkin_make makes",
+    f"rosrun {PACKAGE} fleet_slurm drives.txt results": "test/fleet/test_queues.py runs it on a Slurm of its own",
 }
 ROS_COMMANDS = {"roscore", "roslaunch", "rosparam", "rosservice"}
 LAUNCH = r"(ROS_NAMESPACE=\S+ )?roslaunch"

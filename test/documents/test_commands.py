@@ -30,6 +30,7 @@ class CommandsTest(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         home = Path(cls.folder)
         shutil.copytree(REPOSITORY / "config", home / "config")
+        (home / "drives.txt").write_text("monday --bag KITTI/00/drive.bag\ntuesday --bag KITTI/00/drive.bag\n")
         write_short_scenarios(home / "config" / "scenarios")
         drive = home / "KITTI" / "00"
         cls.run_line(f"simulate_drive --scenario config/scenarios/town.yaml --seed 1 --output {drive}")
@@ -48,7 +49,7 @@ class CommandsTest(unittest.TestCase):
 
     @classmethod
     def run_line(cls, line, folder="."):
-        environment = dict(os.environ, HOME=cls.folder, PATH=f"{PROGRAMS}:{os.environ['PATH']}")
+        environment = dict(os.environ, HOME=cls.folder, PATH=f"{PROGRAMS}:{REPOSITORY / 'scripts'}:{os.environ['PATH']}")
         run = subprocess.run(["bash", "-c", line], cwd=os.path.join(cls.folder, folder), env=environment, text=True,
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, check=False,
                              timeout=LIMIT_S)
@@ -58,7 +59,7 @@ class CommandsTest(unittest.TestCase):
 
     def check(self, command, folder):
         program = words_of(command)[0]
-        self.assertTrue((PROGRAMS / program).exists(), f"no test knows how to run this; the program {program} is not there")
+        self.assertTrue(roslib.packages.find_node(PACKAGE, program), f"no test knows how to run this; the program {program} is not there")
         line = re.sub(f"^rosrun {PACKAGE} ", "", command)  # the folder of programs is on the PATH
         if program in SHORTER:
             (long, short), more = SHORTER[program]

@@ -35,4 +35,10 @@ struct JoinedMap {
 JoinedMap joinMaps(std::vector<JoinedMember> members, std::vector<CrossClosure> closures,
                    const MergeSettings& settings);
 
+/// Landmarks of a joined map, each once, in its frame.
+std::vector<MixtureLandmark> landmarksOf(const JoinedMap& joined);
+
+/// Where each member went by all of its odometry, in the joined frame; empty for one without odometry.
+std::vector<std::vector<StampedPose>> trajectoriesOf(const JoinedMap& joined);
+
 }  // namespace semantic_mht_slam

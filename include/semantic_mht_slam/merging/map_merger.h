@@ -1,8 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "semantic_mht_slam/merging/joined_map.h"
@@ -34,7 +36,30 @@ struct MergeResult {
   std::vector<std::string> reasons;  ///< of each map why it is an island; empty if it is none
 };
 
-/// Called with what is done next.
+/// What two maps alone say.
+struct ComparedPair {
+  OverlapPosterior overlap;
+  std::vector<LoopClosureRecord> closures;  ///< if they overlap: keyframes of b found in a
+};
+
+/// Comparisons of maps by their names, for who merges them again and again.
+class PairMemory {
+ public:
+  const ComparedPair* find(const std::string& a, const std::string& b) const;
+  const ComparedPair& keep(const std::string& a, const std::string& b, ComparedPair pair);
+
+  /// Needed when the map of that name has changed.
+  void forget(const std::string& name);
+
+  /// Forgets everything if the lengths of the comparison are no longer the same.
+  void expect(double range_factor);
+
+ private:
+  std::map<std::pair<std::string, std::string>, ComparedPair> pairs_;
+  double range_factor_ = 1.0;
+};
+
+/// Called with what is done next; what it throws ends the merging.
 using MergeProgress = std::function<void(const std::string& step)>;
 
 /// The settings that are common to finished maps.
@@ -42,8 +67,8 @@ MergeSettings mergeSettings(const std::vector<MergeMap>& maps, const SlamConfig&
 
 /// Makes one map of those that show one place. Two are joined if the posterior of their overlap is decided; the graph
 /// of all of them must bear out the closures between them, or else they come apart again. No frame in common is needed.
-/// Throws InputError for an empty map.
+/// Throws InputError for an empty map. Pairs that are in the memory are not compared again, the others are kept there.
 MergeResult mergeMaps(std::vector<MergeMap>& maps, const SlamConfig& config, const ClassTable& classes,
-                      const MergeConfig& merge = {}, const MergeProgress& progress = {});
+                      const MergeConfig& merge = {}, const MergeProgress& progress = {}, PairMemory* memory = nullptr);
 
 }  // namespace semantic_mht_slam

@@ -15,6 +15,10 @@
 
 namespace semantic_mht_slam {
 
+/// Size of a symbol of a map, m: as large as the detector's range is by the reference's, where it is a metre; larger in
+/// a large map.
+double symbolSize(double range_factor, const SemanticMap& map);
+
 /// The objects of a frame as boxes in class colours, in the map frame: their extents where they are known, else a size
 /// by class, of a few times `symbol_m`; and the vehicle, an arrow. One marker namespace a class, and `base`; the
 /// first marker clears what was shown before.

@@ -1,0 +1,27 @@
+#include "semantic_mht_slam/merging/joined_map.h"
+#include "semantic_mht_slam/slam/map_uncertainty.h"
+#include "semantic_mht_slam/slam/surroundings.h"
+#include "semantic_mht_slam/slam/trajectory_record.h"
+
+namespace semantic_mht_slam {
+
+std::vector<MixtureLandmark> landmarksOf(const JoinedMap& joined) {
+  const SlamParts& parts = joined.parts;
+  const MapGauge gauge{parts.start_cov, parts.mapper ? parts.mapper->scaleStddev() : 0.0};
+  return landmarksOf(parts.map, parts.graph, uncertaintyOf(parts.map, parts.graph, gauge));
+}
+
+std::vector<std::vector<StampedPose>> trajectoriesOf(const JoinedMap& joined) {
+  const std::vector<StampedPose> all = trajectoryOf(joined.parts.sessions.record(joined.parts.map));
+  std::vector<std::vector<StampedPose>> result;
+  auto begin = all.begin();
+  for (const JoinedMember& member : joined.members) {
+    const auto count = member.map->parts().sessions.record(member.map->map()).odometry.size();
+    const auto end = begin + static_cast<std::ptrdiff_t>(count);
+    result.emplace_back(begin, end);
+    begin = end;
+  }
+  return result;
+}
+
+}  // namespace semantic_mht_slam

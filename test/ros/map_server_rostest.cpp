@@ -1,0 +1,339 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <optional>
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <tf2_ros/transform_listener.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <semantic_mht_slam/AddMap.h>
+#include <semantic_mht_slam/MergeStatus.h>
+#include <semantic_mht_slam/RemoveMap.h>
+#include <semantic_mht_slam/SaveMap.h>
+#include <semantic_mht_slam/SemanticMap.h>
+
+#include "semantic_mht_slam/bags/map_file.h"
+
+#include "support/running_node.h"
+#include "support/spinner.h"
+#include "support/square_drive.h"
+#include "support/temporary_folder.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+namespace fs = std::filesystem;
+
+const testing::Environment* const kSpinner = testing::AddGlobalTestEnvironment(new Spinner);
+
+/// The map of a drive through the square of `world` whose odometry begins at another place than the square's; with a
+/// noise of its own.
+class DrivenMap {
+ public:
+  DrivenMap(std::uint64_t world, int begin, int end) : square_(world), begin_(begin) {
+    Slam slam(config_.slam, classes_);
+    for (int i = begin; i < end; ++i) {
+      slam.addOdometry({SquareDrive::stampAt(i), T_odom_square() * SquareDrive::odometryAt(i)});
+      Detections detections = square_.detectionsAt(i);
+      for (Detection& detection : detections) detection.class_index += 4;  // trunks and poles of the default table
+      slam.addDetections(SquareDrive::stampAt(i) - 30000000, detections);
+    }
+    slam.finish();
+    map_ = mapOf(slam);
+  }
+
+  void write(const std::string& path) const { writeMapFile(path, map_, config_, classes_); }
+
+  std::size_t landmarks() const { return map_.landmarks.size(); }
+
+  /// Where its own frame lies in the square, up to what odometry has drifted until its first frame.
+  Pose T_square_map() const {
+    const Pose T_map_base = T_odom_square() * SquareDrive::odometryAt(begin_);
+    return square_.truthAt(begin_) * T_map_base.inverse();
+  }
+
+ private:
+  Pose T_odom_square() const {
+    return {expRotation({0.0, 0.0, 0.3 + 0.01 * begin_}), {40.0, -7.0 - 0.5 * begin_, 0.0}};
+  }
+
+  const SystemConfig config_;
+  const ClassTable classes_ = loadClassTable(config_, "");
+  SquareDrive square_;
+  int begin_;
+  SavedMap map_;
+};
+
+/// A map_server of its own for a test, and what it says.
+class RunningServer {
+ public:
+  RunningServer(const std::string& name, std::vector<std::string> parameters)
+      : name_(name), handle_("/" + name), transforms_(buffer_) {
+    status_subscriber_ = handle_.subscribe<MergeStatus>("merge_status", 10, &RunningServer::takeStatus, this);
+    map_subscriber_ = handle_.subscribe<SemanticMap>("world/map", 10, &RunningServer::takeMap, this);
+    markers_subscriber_ =
+        handle_.subscribe<visualization_msgs::MarkerArray>("world/markers", 10, &RunningServer::takeMarkers, this);
+    diagnostics_subscriber_ = handle_.subscribe<diagnostic_msgs::DiagnosticArray>(
+        "/diagnostics", 100, &RunningServer::takeDiagnostics, this);
+    parameters.insert(parameters.begin(), {"__name:=map_server", "__ns:=/" + name});
+    process_ = std::make_unique<RosProcess>("map_server", parameters);
+  }
+
+  RosProcess& process() { return *process_; }
+
+  template <class Service>
+  typename Service::Response call(const std::string& service, const typename Service::Request& request) {
+    Service call;
+    call.request = request;
+    const std::string full = "/" + name_ + "/map_server/" + service;
+    EXPECT_TRUE(ros::service::waitForService(full, ros::Duration(20.0)));
+    EXPECT_TRUE(callService(full, call));
+    EXPECT_FALSE(call.response.message.empty());
+    return call.response;
+  }
+
+  AddMap::Response add(const std::string& path, const std::string& name = "") {
+    AddMap::Request request;
+    request.path = path;
+    request.name = name;
+    return call<AddMap>("add_map", request);
+  }
+
+  RemoveMap::Response remove(const std::string& name, const std::string& service = "remove_map") {
+    RemoveMap::Request request;
+    request.name = name;
+    return call<RemoveMap>(service, request);
+  }
+
+  /// Waits until the newest result is one of which this holds.
+  template <class Predicate>
+  bool comesTo(const Predicate& isTrue) {
+    return waitFor(
+        [&] {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          return status_ && !status_->is_merging && isTrue(*status_);
+        },
+        60.0);
+  }
+
+  /// Waits until the maps have these states, by their names.
+  bool comesTo(const std::map<std::string, int>& states) {
+    return comesTo([&](const MergeStatus& status) {
+      std::map<std::string, int> now;
+      for (const MapStatus& map : status.maps) now[map.name] = map.state;
+      return now == states;
+    });
+  }
+
+  MapStatus map(const std::string& name) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const MapStatus& map : status_->maps) {
+      if (map.name == name) return map;
+    }
+    return {};
+  }
+
+  MergeStatus status() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return *status_;
+  }
+
+  std::size_t landmarks() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return world_ ? world_->landmarks.size() : 0;
+  }
+
+  bool comesToShowLandmarks(std::size_t count) {
+    return waitFor([&] { return landmarks() == count; });
+  }
+
+  bool draws(const std::string& name) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::any_of(markers_.markers.begin(), markers_.markers.end(),
+                       [&](const visualization_msgs::Marker& marker) { return marker.ns == name; });
+  }
+
+  std::string diagnosis() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return diagnosis_;
+  }
+
+  /// world -> NAME/map.
+  std::optional<Pose> transform(const std::string& name) const {
+    try {
+      return fromMessage(buffer_.lookupTransform("world", name + "/map", ros::Time(0)).transform);
+    } catch (const tf2::TransformException&) {
+      return std::nullopt;
+    }
+  }
+
+ private:
+  void takeStatus(const MergeStatusConstPtr& message) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_ = *message;
+  }
+  void takeMap(const SemanticMapConstPtr& message) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    world_ = *message;
+  }
+  void takeMarkers(const visualization_msgs::MarkerArrayConstPtr& message) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    markers_ = *message;
+  }
+  void takeDiagnostics(const diagnostic_msgs::DiagnosticArrayConstPtr& message) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto& status : message->status) {
+      if (status.name.find(name_) != std::string::npos) diagnosis_ = status.message;
+    }
+  }
+
+  std::string name_;
+  ros::NodeHandle handle_;
+  mutable std::mutex mutex_;
+  std::optional<MergeStatus> status_;
+  std::optional<SemanticMap> world_;
+  visualization_msgs::MarkerArray markers_;
+  std::string diagnosis_;
+  tf2_ros::Buffer buffer_;
+  tf2_ros::TransformListener transforms_;
+  ros::Subscriber status_subscriber_;
+  ros::Subscriber map_subscriber_;
+  ros::Subscriber markers_subscriber_;
+  ros::Subscriber diagnostics_subscriber_;
+  std::unique_ptr<RosProcess> process_;
+};
+
+constexpr int kJoined = MapStatus::JOINED;
+constexpr int kApart = MapStatus::APART;
+constexpr int kRemoved = MapStatus::REMOVED;
+constexpr int kUnusable = MapStatus::UNUSABLE;
+
+/// Two drives through one square, and one through another.
+struct Drives {
+  DrivenMap first{7, 0, 400};
+  DrivenMap second{7, 680, 1100};
+  DrivenMap stranger{8, 0, 400};
+};
+
+const Drives& drives() {
+  static const Drives drives;
+  return drives;
+}
+
+TEST(MapServerTest, MapsOfAFolderBecomeOneAsTheyCome) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "first.bag");
+  RunningServer server("folder", {"_server/folder:=" + folder.path()});
+  ASSERT_TRUE(server.comesTo({{"first", kJoined}}));
+  EXPECT_TRUE(server.comesToShowLandmarks(drives().first.landmarks()));
+
+  drives().second.write(folder / "second.bag");
+  ASSERT_TRUE(server.comesTo({{"first", kJoined}, {"second", kJoined}}));
+  const MergeStatus status = server.status();
+  ASSERT_EQ(status.pairs.size(), 1U);
+  EXPECT_TRUE(status.pairs[0].joined);
+  EXPECT_GT(status.pairs[0].posterior, 0.999);
+  EXPECT_GT(status.pairs[0].closures, 10U);
+  EXPECT_TRUE(server.comesToShowLandmarks(status.landmarks));
+  EXPECT_LT(server.landmarks(), drives().first.landmarks() + drives().second.landmarks() / 2) << "each object once";
+  EXPECT_TRUE(server.draws("first") && server.draws("second"));
+  ASSERT_TRUE(waitFor([&] { return server.transform("first") && server.transform("second"); }));
+  const Pose T_first_second = server.transform("first")->inverse() * *server.transform("second");
+  const Pose true_pose = drives().first.T_square_map().inverse() * drives().second.T_square_map();
+  const Pose error = true_pose.inverse() * T_first_second;
+  EXPECT_LT(logRotation(error.rotation).norm(), 0.05);
+
+  drives().stranger.write(folder / "third.bag");
+  ASSERT_TRUE(server.comesTo({{"first", kJoined}, {"second", kJoined}, {"third", kApart}}));
+  EXPECT_FALSE(server.map("third").reason.empty());
+  EXPECT_TRUE(waitFor([&] { return server.diagnosis().find("2 of 3 maps are in one: third: ") == 0; }))
+      << server.diagnosis();
+
+  drives().second.write(folder / "third.bag");
+  ASSERT_TRUE(server.comesTo({{"first", kJoined}, {"second", kJoined}, {"third", kJoined}})) << "the file has changed";
+}
+
+TEST(MapServerTest, RemovedAndForgottenMapsLeaveTheWorld) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "a.bag");
+  drives().second.write(folder / "b.bag");
+  RunningServer server("services", {"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"});
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
+  const std::size_t of_both = server.status().landmarks;
+
+  EXPECT_TRUE(server.remove("b").success);
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kRemoved}}));
+  EXPECT_TRUE(server.comesToShowLandmarks(drives().first.landmarks()));
+  EXPECT_NE(server.remove("b").message.find("removed already"), std::string::npos);
+  EXPECT_TRUE(server.add("", "b").success);
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
+  EXPECT_TRUE(server.comesToShowLandmarks(of_both));
+
+  EXPECT_TRUE(server.remove("b", "forget_map").success);
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}}));
+  const AddMap::Response unknown = server.add("", "b");
+  EXPECT_FALSE(unknown.success);
+  EXPECT_EQ(unknown.message, "there is no map 'b'; there are: a");
+  const AddMap::Response added = server.add(folder / "b.bag", "robot-2");
+  EXPECT_TRUE(added.success);
+  EXPECT_EQ(added.message, "robot-2");
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"robot-2", kJoined}}));
+}
+
+TEST(MapServerTest, SavedWorldIsAMapFile) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "a.bag");
+  drives().second.write(folder / "b.bag");
+  RunningServer server("saving", {"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"});
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
+  SaveMap::Request request;
+  request.path = folder / "all.bag";
+  const SaveMap::Response saved = server.call<SaveMap>("save_map", request);
+  ASSERT_TRUE(saved.success) << saved.message;
+  EXPECT_EQ(saved.bytes, fs::file_size(folder / "all.bag"));
+  const SystemConfig config;
+  const LoadedMap map = readMapFile(folder / "all.bag", config, loadClassTable(config, ""), [] { return true; });
+  EXPECT_EQ(map.landmarks, server.status().landmarks);
+}
+
+TEST(MapServerTest, WhatCannotBeUsedIsNamedAndTheRestGoesOn) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "good.bag");
+  std::ofstream(folder / "bad.bag") << "no bag";
+  std::ofstream(folder / "notes.txt") << "no map";
+  RunningServer server("trouble", {"_server/folder:=" + folder.path()});
+  ASSERT_TRUE(server.comesTo({{"bad", kUnusable}, {"good", kJoined}}));
+  EXPECT_NE(server.map("bad").reason.find("no map file at all"), std::string::npos);
+  EXPECT_TRUE(waitFor([&] { return server.diagnosis().find("bad.bag") != std::string::npos; })) << server.diagnosis();
+  const AddMap::Response missing = server.add(folder / "missing.bag");
+  EXPECT_FALSE(missing.success);
+  EXPECT_NE(missing.message.find("No such file"), std::string::npos) << missing.message;
+  EXPECT_FALSE(server.add(folder / "good.bag", "a/b").success) << "no name";
+  fs::remove(folder / "bad.bag");
+  drives().second.write(folder / "bad.bag");
+  ASSERT_TRUE(server.comesTo({{"bad", kJoined}, {"good", kJoined}})) << "mended";
+}
+
+TEST(MapServerTest, ItDoesNotBeginWithWhatCannotBeUsed) {
+  for (const char* parameter : {"_server/maps:=/nowhere/map.bag", "_server/folder:=/nowhere", "_server/map:=/a.bag"}) {
+    RosProcess process("map_server", {"__name:=unusable", parameter});
+    EXPECT_TRUE(waitFor([&] { return process.stop(0, 0.0) >= 0.0; })) << parameter;
+    EXPECT_EQ(process.exitCode(), 1) << parameter;
+  }
+}
+
+TEST(MapServerTest, InterruptEndsIt) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "a.bag");
+  RunningServer server("ending", {"_server/folder:=" + folder.path()});
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}}));
+  EXPECT_GE(server.process().stop(SIGINT, 5.0), 0.0);
+  EXPECT_EQ(server.process().exitCode(), 0);
+}
+
+}  // namespace
+}  // namespace semantic_mht_slam
