@@ -29,7 +29,8 @@ bool isNameCharacter(char c) {
 /// As part of a tf frame.
 std::string nameOf(const std::string& path) {
   std::string name = fs::path(path).stem().string();
-  std::replace_if(name.begin(), name.end(), [](char c) { return !isNameCharacter(c); }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !isNameCharacter(c); }, '_');
   return name.empty() ? "map" : name;
 }
 
@@ -84,9 +85,8 @@ void ServedMaps::takeFolder(const std::string& folder) {
       map.version = versionOf(path);
       {
         const std::lock_guard<std::mutex> lock(mutex_);
-        if (std::any_of(maps_.begin(), maps_.end(), [&](const ServedMap& known) {
-              return known.path == path && known.version == map.version;
-            })) {
+        if (std::any_of(maps_.begin(), maps_.end(),
+                        [&](const ServedMap& known) { return known.path == path && known.version == map.version; })) {
           continue;
         }
       }

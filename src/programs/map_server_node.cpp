@@ -180,10 +180,11 @@ void MapServerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& wrappe
   }
   const FailureStatus failures = failures_.status();
   if (failures.in_a_row > 0) problems += (problems.empty() ? "" : "; ") + failures.newest;
-  wrapper.summary(
-      failures.isLasting() ? DiagnosticStatus::ERROR : problems.empty() ? DiagnosticStatus::OK : DiagnosticStatus::WARN,
-      std::to_string(joined) + " of " + std::to_string(status_.maps.size()) + " maps are in one" +
-          (status_.is_merging ? ", merging" : "") + (problems.empty() ? "" : ": " + problems));
+  wrapper.summary(failures.isLasting() ? DiagnosticStatus::ERROR
+                  : problems.empty()   ? DiagnosticStatus::OK
+                                       : DiagnosticStatus::WARN,
+                  std::to_string(joined) + " of " + std::to_string(status_.maps.size()) + " maps are in one" +
+                      (status_.is_merging ? ", merging" : "") + (problems.empty() ? "" : ": " + problems));
   wrapper.add("maps", status_.maps.size());
   wrapper.add("joined", joined);
   wrapper.add("landmarks", status_.landmarks);

@@ -33,7 +33,8 @@ class World {
 
   /// Of the maps that can be used and were not removed. `progress` may throw to give up. Pairs of maps that are in the
   /// memory are not compared again.
-  World(WorldSettings settings, const std::vector<ServedMap>& served, PairMemory& memory, const MergeProgress& progress);
+  World(WorldSettings settings, const std::vector<ServedMap>& served, PairMemory& memory,
+        const MergeProgress& progress);
 
   bool isEmpty() const { return maps_.empty(); }
 

@@ -13,12 +13,12 @@ EXEMPT = {
     "source devel/setup.bash": "what catkin_make makes",
     f"rosrun {PACKAGE} fleet_slurm drives.txt results": "test/fleet/test_queues.py runs it on a Slurm of its own",
 }
-ROS_COMMANDS = {"roscore", "roslaunch", "rosparam", "rosservice"}
+ROS_COMMANDS = {"roscore", "roslaunch", "rosparam", "rosservice", "rostopic"}
 LAUNCH = r"(ROS_NAMESPACE=\S+ )?roslaunch"
 LONG_RUN = ("roscore", "rosparam load config/kitti.yaml /slam_node", f"rosrun {PACKAGE} slam_node",
             f"rosrun {PACKAGE} long_drive --hours 8 --row 1")
 # How the commands begin that test/ros/document_commands_rostest.py runs, all of them that begin so
-ON_A_RUNNING_SYSTEM = (LAUNCH, "rosservice call ", f"rosrun {PACKAGE} doctor$", f"rosrun {PACKAGE} odometry_relay ",
+ON_A_RUNNING_SYSTEM = (LAUNCH, "rosservice call ", "rostopic echo -n 1 /merge_status$", f"rosrun {PACKAGE} doctor$", f"rosrun {PACKAGE} odometry_relay ",
                        *(f"{command}$" for command in LONG_RUN))
 NODES = {"doctor", "odometry_relay", "slam_node", "long_drive"}  # programs that need a running system
 

@@ -52,7 +52,8 @@ class DocumentCommandsTest(unittest.TestCase):
                  "/path/to/map.bag": os.path.join(self.folder, "map.bag"),
                  "/path/to/network.onnx": os.path.join(self.folder, "network.onnx"),
                  "/path/to/espnet.onnx": os.path.join(self.folder, "network.onnx"),
-                 "/data/town.bag": os.path.join(self.folder, "map.bag"), "/tmp/town": os.path.join(self.folder, "town")}
+                 "/data/town.bag": os.path.join(self.folder, "map.bag"), "/tmp/town": os.path.join(self.folder, "town"),
+                 "/data/maps": os.path.join(self.folder, "maps"), "/data/world.bag": os.path.join(self.folder, "world.bag")}
         for name, own in names.items():
             line = line.replace(name, own)
         return line
@@ -128,7 +129,7 @@ class DocumentCommandsTest(unittest.TestCase):
         self.play("/map", SemanticMap)
         self.run_line("rosservice call /finish_submap")
         ids = [landmark.id for landmark in rospy.ServiceProxy("/get_landmarks", GetLandmarks)().landmarks]
-        calls = lines("rosservice call")
+        calls = lines("rosservice call (?!/map_server)")
         self.assertGreater(len(calls), 8)
 
         def check(call):
@@ -139,6 +140,18 @@ class DocumentCommandsTest(unittest.TestCase):
 
         self.check_each(calls, check)
 
+    def test_a_map_server_takes_the_maps_of_a_folder(self):
+        self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && mkdir maps && "
+                      "cp result/map.bag maps/monday.bag")
+        self.start(self.one(f"roslaunch {PACKAGE} map_server.launch") + " rviz:=false")
+        rospy.wait_for_service("/map_server/save_map", WAIT_S)
+        self.assertTrue(rospy.wait_for_message("/world/map", SemanticMap, WAIT_S).landmarks)
+        self.assertIn("monday", self.run_line(self.one("rostopic echo -n 1 /merge_status")))
+        calls = lines("rosservice call /map_server")
+        self.assertGreater(len(calls), 2)
+        for call in calls:
+            self.assertIn("success: True", self.run_line(self.own(call)))
+
     def test_every_launch_file_begins_as_it_is_called(self):
         shutil.copy(self.bag, os.path.join(self.folder, "map.bag"))
         self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && cp result/map.bag map.bag")
@@ -148,7 +161,7 @@ class DocumentCommandsTest(unittest.TestCase):
 
         def check(line):
             line = self.own(line)
-            if re.search(r"(slam|localization|kitti)\.launch", line):
+            if re.search(r"(slam|localization|kitti|map_server)\.launch", line):
                 line += " rviz:=false"
             with tempfile.NamedTemporaryFile("w+") as output:
                 launch = self.start(line, output)
