@@ -11,6 +11,8 @@ void describe(MapServerConfig& config, Fields& fields) {
   fields.add("server.maps", config.maps, "Map files to begin with, absolute, with `:` between them.");
   fields.add("server.folder", config.folder,
              "Folder whose map files (*.bag) are taken as they come and change; absolute. Empty: none.");
+  fields.add("server.robots", config.robots,
+             "Namespaces of the nodes of robots whose maps are taken as they grow, with `:` between them.");
   fields.add("server.world_frame", config.world_frame, "Frame of the joined map; that of the first map in it.");
 }
 

@@ -39,7 +39,7 @@ RegistrationPoint pointOf(const SceneObject& object) {
 
 void MergeMap::prepare(const MergeSettings& settings, double window_m, double spacing_m, int tile_landmarks,
                        int min_tile_landmarks) {
-  odometry_ = parts_->mapper ? parts_->mapper->odometryModel() : OdometryModel{};
+  odometry_ = parts_->odometry;
   makeWindows(settings, window_m, spacing_m);
   makeTiles(settings.classes, 4.0 * window_m, tile_landmarks, min_tile_landmarks);
   makePoints();

@@ -59,38 +59,38 @@ ServedMaps::ServedMaps(SystemConfig config, SlamConfig slam_config, ClassTable c
       classes_(std::move(classes)),
       keep_reading_(std::move(keep_reading)) {}
 
-std::shared_ptr<const Slam> ServedMaps::read(const std::string& path) const {
+std::shared_ptr<const SlamParts> ServedMaps::read(const std::string& path) const {
   LoadedMap map = readMapFile(path, config_, classes_, keep_reading_);
   auto slam = std::make_shared<Slam>(slam_config_, classes_, std::move(map.state), keep_reading_);
   if (!slam->parts().waiting.empty() || (slam->parts().mapper && slam->parts().mapper->isOpen())) slam->finish();
   if (slam->map().submaps().empty()) throw InputError(path + ": has no finished submap");
-  return slam;
+  return {slam, &slam->parts()};
 }
 
 std::string ServedMaps::add(const std::string& path, const std::string& name) {
   if (!name.empty()) requireName(name);
   ServedMap map;
   map.name = name;
-  map.path = path;
+  map.source = path;
   map.version = versionOf(path);
-  map.slam = read(path);
+  map.parts = read(path);
   return take(std::move(map));
 }
 
 void ServedMaps::takeFolder(const std::string& folder) {
   for (const std::string& path : mapFilesIn(folder)) {
     ServedMap map;
-    map.path = path;
+    map.source = path;
     try {
       map.version = versionOf(path);
       {
         const std::lock_guard<std::mutex> lock(mutex_);
         if (std::any_of(maps_.begin(), maps_.end(),
-                        [&](const ServedMap& known) { return known.path == path && known.version == map.version; })) {
+                        [&](const ServedMap& known) { return known.source == path && known.version == map.version; })) {
           continue;
         }
       }
-      map.slam = read(path);
+      map.parts = read(path);
     } catch (const InputError& error) {
       if (!keep_reading_()) return;
       map.problem = error.what();
@@ -102,17 +102,40 @@ void ServedMaps::takeFolder(const std::string& folder) {
 std::string ServedMaps::take(ServedMap map) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto known = std::find_if(maps_.begin(), maps_.end(), [&](const ServedMap& other) {
-    return map.name.empty() ? other.path == map.path : other.name == map.name;
+    return map.name.empty() ? other.source == map.source : other.name == map.name;
   });
   map.generation = ++changes_;
   if (known == maps_.end()) {
-    if (map.name.empty()) map.name = freeName(nameOf(map.path));
+    if (map.name.empty()) map.name = freeName(nameOf(map.source));
     maps_.push_back(std::move(map));
     return maps_.back().name;
   }
   map.name = known->name;
   *known = std::move(map);
   return known->name;
+}
+
+void ServedMaps::put(ServedMap map) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto known =
+      std::find_if(maps_.begin(), maps_.end(), [&](const ServedMap& other) { return other.name == map.name; });
+  map.generation = ++changes_;
+  if (known == maps_.end()) {
+    maps_.push_back(std::move(map));
+  } else {
+    map.is_removed = known->is_removed;
+    *known = std::move(map);
+  }
+}
+
+void ServedMaps::retire(const std::string& name) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (ServedMap& map : maps_) {
+    if (map.name != name) continue;
+    map.name = freeName(name + "_before");
+    map.frame.clear();
+    map.generation = ++changes_;
+  }
 }
 
 std::string ServedMaps::freeName(const std::string& wanted) const {

@@ -25,15 +25,16 @@ struct FileVersion {
 /// A map of the server.
 struct ServedMap {
   std::string name;
-  std::string path;
+  std::string source;  ///< file, or topic
   FileVersion version;
-  std::shared_ptr<const Slam> slam;  ///< none: it cannot be used
-  std::string problem;               ///< why it cannot
+  std::string frame;                       ///< of tf; empty: NAME/map
+  std::shared_ptr<const SlamParts> parts;  ///< none: it cannot be used
+  std::string problem;                     ///< why it cannot
   bool is_removed = false;
   std::size_t generation = 0;  ///< another one when it was read again
 };
 
-/// The map files of a server. Thread-safe; a file is read without holding up who asks for something else.
+/// The maps of a server. Thread-safe; a file is read without holding up who asks for something else.
 class ServedMaps {
  public:
   ServedMaps(SystemConfig config, SlamConfig slam_config, ClassTable classes, KeepReading keep_reading);
@@ -45,6 +46,12 @@ class ServedMaps {
   /// Takes the new and changed map files of a folder. One that cannot be used is listed with the problem. Throws
   /// InputError for a folder that cannot be listed.
   void takeFolder(const std::string& folder);
+
+  /// Takes the newest state of a robot's map in place of the one before of that name. A map that was removed stays so.
+  void put(ServedMap map);
+
+  /// The map of that name, if there is one, goes on under another name: its robot has begun a new one.
+  void retire(const std::string& name);
 
   /// Brings back a map that was removed. These three throw InputError if there is none of that name.
   void restore(const std::string& name);
@@ -58,7 +65,7 @@ class ServedMaps {
   std::size_t changes() const;
 
  private:
-  std::shared_ptr<const Slam> read(const std::string& path) const;
+  std::shared_ptr<const SlamParts> read(const std::string& path) const;
   std::string take(ServedMap map);
   std::string freeName(const std::string& wanted) const;
   ServedMap& named(const std::string& name);

@@ -45,12 +45,15 @@ MapServerNode::MapServerNode(const ros::NodeHandle& handle, const ros::NodeHandl
   diagnostics_.add("maps", [this](diagnostic_updater::DiagnosticStatusWrapper& wrapper) { diagnose(wrapper); });
   diagnostics_timer_ = world_handle.createWallTimer(
       ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  for (const std::string& robot : split(setup.server.robots)) {
+    robots_.push_back(std::make_unique<RobotFeed>(handle, robot, slam_config, classes, [this] { wake(); }));
+  }
   worker_ = std::thread([this] { work(); });
 }
 
 MapServerNode::~MapServerNode() {
   is_closing_ = true;
-  wake_.notify_all();
+  wake();
   worker_.join();
 }
 
@@ -65,7 +68,7 @@ bool MapServerNode::answer(const std::string& service, Response& response, const
     }
   });
   if (!response.success && response.message.empty()) response.message = failures_.status().newest;
-  wake_.notify_all();
+  wake();
   return true;
 }
 
@@ -111,14 +114,29 @@ std::shared_ptr<const World> MapServerNode::world() const {
   return world_;
 }
 
+void MapServerNode::wake() {
+  {
+    const std::lock_guard<std::mutex> lock(wake_mutex_);
+    is_woken_ = true;
+  }
+  wake_.notify_all();
+}
+
 void MapServerNode::work() {
   bool is_first = true;
   while (!isClosing()) {
     lookAtFolder();
+    for (const auto& robot : robots_) {
+      failures_.run("listening to a robot", [&] {
+        robot->catchUp();
+        robot->takeNews(maps_);
+      });
+    }
     if (maps_.changes() != merged_changes_ || is_first) failures_.run("merging", [this] { mergeAndPublish(); });
     is_first = false;
     std::unique_lock<std::mutex> lock(wake_mutex_);
-    wake_.wait_for(lock, kPeriod, [this] { return is_closing_ || maps_.changes() != merged_changes_; });
+    wake_.wait_for(lock, kPeriod, [this] { return is_woken_; });
+    is_woken_ = false;
   }
 }
 

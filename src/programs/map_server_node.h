@@ -21,6 +21,7 @@
 #include "semantic_mht_slam/ros/failure_guard.h"
 
 #include "map_server_maps.h"
+#include "map_server_robots.h"
 #include "map_server_world.h"
 
 namespace semantic_mht_slam {
@@ -38,6 +39,7 @@ class MapServerNode {
  private:
   void work();
   void lookAtFolder();
+  void wake();
   void mergeAndPublish();
   void publishStatus(bool is_merging);
   std::shared_ptr<const World> world() const;
@@ -69,6 +71,8 @@ class MapServerNode {
   ros::WallTimer diagnostics_timer_;
   std::mutex wake_mutex_;
   std::condition_variable wake_;
+  bool is_woken_ = false;
+  std::vector<std::unique_ptr<RobotFeed>> robots_;
   std::thread worker_;
 };
 

@@ -46,10 +46,10 @@ World::World(WorldSettings settings, const std::vector<ServedMap>& served, PairM
              const MergeProgress& progress)
     : settings_(std::move(settings)) {
   for (const ServedMap& map : served) {
-    if (map.is_removed || !map.slam) continue;
-    known_[map.name] = {map.generation, maps_.size()};
-    held_.push_back(map.slam);
-    maps_.emplace_back(map.name, *map.slam);
+    if (map.is_removed || !map.parts) continue;
+    known_[map.name] = {map.generation, maps_.size(), map.frame.empty() ? map.name + "/map" : map.frame};
+    held_.push_back(map.parts);
+    maps_.emplace_back(map.name, *map.parts);
   }
   if (maps_.empty()) return;
   result_ = mergeMaps(maps_, settings_.slam, settings_.classes, {}, progress, &memory);
@@ -69,8 +69,8 @@ std::vector<geometry_msgs::TransformStamped> World::transforms() const {
     const KeyframeId newest(own.keyframes().size() - 1);
     const KeyframeId in_world(newest.index() + member.first_keyframe);
     const Pose T_world_map = joined().parts.map.T_map_keyframe(in_world) * own.T_map_keyframe(newest).inverse();
-    transforms.push_back(
-        toTransform({toStamp(ros::Time::now()), T_world_map}, settings_.frame, member.map->name() + "/map"));
+    const std::string& frame = known_.at(member.map->name()).frame;
+    transforms.push_back(toTransform({toStamp(ros::Time::now()), T_world_map}, settings_.frame, frame));
   }
   return transforms;
 }
@@ -106,9 +106,9 @@ visualization_msgs::MarkerArray World::markers() const {
 MapStatus World::statusOf(const ServedMap& served) const {
   MapStatus status;
   status.name = served.name;
-  status.source = served.path;
-  if (served.slam) {
-    const Map& map = served.slam->map();
+  status.source = served.source;
+  if (served.parts) {
+    const Map& map = served.parts->map;
     status.submaps = static_cast<std::uint32_t>(map.submaps().size());
     status.keyframes = static_cast<std::uint32_t>(map.keyframes().size());
     status.driven = map.keyframes().back().driven_m;
@@ -116,7 +116,7 @@ MapStatus World::statusOf(const ServedMap& served) const {
   const auto known = known_.find(served.name);
   if (served.is_removed) {
     status.state = MapStatus::REMOVED;
-  } else if (!served.slam) {
+  } else if (!served.parts) {
     status.state = MapStatus::UNUSABLE;
     status.reason = served.problem;
   } else if (known == known_.end() || known->second.generation != served.generation) {

@@ -40,7 +40,7 @@ class World {
 
   SemanticMap map() const;
 
-  /// Of every map in it: world -> NAME/map, as it is where that map ends.
+  /// Of every map in it: world -> its frame, as it is where that map ends.
   std::vector<geometry_msgs::TransformStamped> transforms() const;
 
   /// Landmarks, and where each map in it was driven.
@@ -56,6 +56,7 @@ class World {
   struct Known {
     std::size_t generation = 0;
     std::size_t place = 0;  ///< in `maps_`
+    std::string frame;
   };
 
   const JoinedMap& joined() const { return *result_.groups.front().joined; }
@@ -63,7 +64,7 @@ class World {
   visualization_msgs::Marker path(std::size_t member, double symbol_m) const;
 
   const WorldSettings settings_;
-  std::vector<std::shared_ptr<const Slam>> held_;
+  std::vector<std::shared_ptr<const SlamParts>> held_;
   std::vector<MergeMap> maps_;
   std::map<std::string, Known> known_;  ///< by name
   MergeResult result_;

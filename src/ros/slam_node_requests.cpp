@@ -25,6 +25,7 @@ void SlamNode::advertiseRequests(ros::NodeHandle& handle) {
   services_.push_back(handle.advertiseService("add_closure", &SlamNode::addClosure, this));
   services_.push_back(handle.advertiseService("remove_closure", &SlamNode::removeClosure, this));
   services_.push_back(handle.advertiseService("save_results", &SlamNode::saveResults, this));
+  services_.push_back(handle.advertiseService("get_map_updates", &SlamNode::getMapUpdates, this));
 }
 
 template <class Response, class Body>
@@ -40,6 +41,13 @@ bool SlamNode::change(const std::string& service, Response& response, const Body
     publishMap();
     published_odometry_ = 0;  // the trajectory may have been corrected
     noteStatus();
+  });
+}
+
+bool SlamNode::getMapUpdates(GetMapUpdates::Request& request, GetMapUpdates::Response& response) {
+  return answer("get_map_updates", response, [&] {
+    const auto lock = lockCaughtUp();
+    publisher_.updates().answer(request, response, *slam_);
   });
 }
 

@@ -34,6 +34,7 @@ FixedAxesCov withGap(const FixedAxesCov& cov, const Pose& believed, const Pose& 
 SlamPublisher::SlamPublisher(ros::NodeHandle handle, const NodeConfig& config, const ClassTable& classes)
     : config_(config),
       classes_(classes),
+      updates_(handle, config.map_frame, classes),
       pose_publisher_(handle.advertise<geometry_msgs::PoseWithCovarianceStamped>("pose", 100)),
       trajectory_publisher_(handle.advertise<nav_msgs::Path>("trajectory", 1, true)),
       objects_publisher_(handle.advertise<visualization_msgs::MarkerArray>("markers/objects", 10, true)),
@@ -130,6 +131,7 @@ void SlamPublisher::publishMap(const Slam& slam, const LiveConfig& live) {
   }
   loops_ = acceptedClosures(slam.map());
   publishMapMarkers(slam, live);
+  updates_.publishNew(slam);
 }
 
 void SlamPublisher::publishProvisional(const Slam& slam, const LiveConfig& live) {
@@ -177,6 +179,7 @@ void SlamPublisher::startAgain(const Slam& slam) {
   closures_ = {};
   loops_ = 0;
   odometry_.clear();
+  updates_.startAgain();
   map_ = toMessage(0, config_.map_frame, classes_, {}, 0);
   shown_ = map_;
   map_publisher_.publish(map_);

@@ -11,6 +11,7 @@ namespace semantic_mht_slam {
 struct MapServerConfig {
   std::string maps;
   std::string folder;
+  std::string robots;
   std::string world_frame = "world";
 };
 

@@ -17,6 +17,7 @@
 
 #include <semantic_mht_slam/AddClosure.h>
 #include <semantic_mht_slam/GetLandmarks.h>
+#include <semantic_mht_slam/GetMapUpdates.h>
 #include <semantic_mht_slam/LoadMap.h>
 #include <semantic_mht_slam/LockLandmark.h>
 #include <semantic_mht_slam/RemoveClosure.h>
@@ -119,6 +120,7 @@ class SlamNode {
   template <class Response, class Body>
   bool change(const std::string& service, Response& response, const Body& body);
   bool removeLandmark(RemoveLandmark::Request& request, RemoveLandmark::Response& response);
+  bool getMapUpdates(GetMapUpdates::Request& request, GetMapUpdates::Response& response);
   bool lockLandmark(LockLandmark::Request& request, LockLandmark::Response& response);
   bool addClosure(AddClosure::Request& request, AddClosure::Response& response);
   bool removeClosure(RemoveClosure::Request& request, RemoveClosure::Response& response);

@@ -14,6 +14,7 @@
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/ros/correction_policy.h"
 #include "semantic_mht_slam/ros/graph_view.h"
+#include "semantic_mht_slam/ros/map_updates.h"
 #include "semantic_mht_slam/slam/slam.h"
 
 namespace semantic_mht_slam {
@@ -71,6 +72,9 @@ class SlamPublisher {
   /// A loaded map takes the place of the one before.
   void showLoaded(const Slam& slam, const LiveConfig& live);
 
+  /// What others may have missed of `map_update`.
+  const MapUpdates& updates() const { return updates_; }
+
   /// What the topic `map` shows.
   const SemanticMap& map() const { return shown_; }
 
@@ -88,6 +92,7 @@ class SlamPublisher {
 
   const NodeConfig config_;
   const ClassTable classes_;
+  MapUpdates updates_;
   tf2_ros::TransformBroadcaster transform_broadcaster_;
   ros::Publisher pose_publisher_;
   ros::Publisher trajectory_publisher_;
