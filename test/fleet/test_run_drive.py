@@ -59,12 +59,43 @@ def start_stopped(fleet):
     return process
 
 
+def test_lists_are_read_as_they_are_meant(fleet):
+    fleet.write_list("\ufeffmonday --bag run#3.bag  # a remark\r\n#tuesday --bag b.bag\r\n")
+    assert fleet.run("--count").stdout == "1\n"
+    failed = fleet.run(1)
+    assert failed.returncode == 1 and "run#3.bag" in failed.stdout
+
+
+def test_what_wrote_no_map_has_failed(fleet):
+    fleet.write_list("help --help\n")
+    failed = fleet.run(1)
+    assert failed.returncode == 1 and "it wrote no map.bag" in failed.stdout
+
+
+def test_a_folder_that_is_no_result_stays(fleet):
+    (fleet.output / "drives/drive_1").mkdir(parents=True)
+    refused = fleet.run(1)
+    assert refused.returncode == 1 and "is no result of a drive" in refused.stdout
+    assert "is no result of a drive" in fleet.run("--merge").stdout
+    assert list((fleet.output / "drives/drive_1").iterdir()) == []
+
+
+def test_the_lock_lives_as_long_as_the_program(fleet):
+    process = start_stopped(fleet)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    refused = fleet.run(1)
+    assert refused.returncode == 1 and "another process runs 'drive_1'" in refused.stdout
+    assert "drive_1: is being run" in fleet.run("--merge").stdout
+    subprocess.run(["pkill", "-KILL", "-f", f"slam_offline.*{fleet.output}"], check=False)
+
+
 def test_two_processes_never_run_one_drive(fleet):
     (fleet.output / "locks").mkdir(parents=True)
     with open(fleet.output / "locks/drive_1", "w", encoding="utf-8") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         refused = fleet.run(1)
-    assert refused.returncode == 1 and "another process runs the drive 'drive_1'" in refused.stdout
+    assert refused.returncode == 1 and "another process runs 'drive_1'" in refused.stdout
     assert fleet.run(1).returncode == 0
 
 
@@ -74,9 +105,10 @@ def test_a_killed_run_leaves_nothing_that_counts(fleet):
     process.wait()
     subprocess.run(["pkill", "-KILL", "-f", f"slam_offline.*{fleet.output}"], check=False)
     assert list(fleet.output.glob("drives/.drive_1.tmp-*")) and not fleet.written()
+    (fleet.output / "drives/.drive_1.tmp-b.tmp-12345678").mkdir()  # of a drive of another name
     fleet.write_list("drive_1 --dataset drive_1 --odometry odometry/odometry.txt\n")
     assert fleet.run(1).returncode == 0
-    assert not list(fleet.output.glob("drives/.drive_1.tmp-*"))
+    assert [path.name for path in fleet.output.glob("drives/.*")] == [".drive_1.tmp-b.tmp-12345678"]
 
 
 def test_a_request_to_end_is_a_failure_that_says_so(fleet):
@@ -91,6 +123,7 @@ def test_a_request_to_end_is_a_failure_that_says_so(fleet):
     ("", "names no drive"),
     ("# a remark\n\n", "names no drive"),
     ("../monday --bag a.bag\n", "drives.txt:1: '../monday' is no name of a drive"),
+    ("monday --bag a.bag\0\n", "drives.txt:1: a zero byte"),
     ("monday\n", "drives.txt:1: no arguments of slam_offline behind the name"),
     ("a --bag a.bag\na --bag b.bag\n", "drives.txt:2: a second drive 'a'"),
     ("a --bag 'a.bag\n", "drives.txt:1: No closing quotation"),

@@ -32,17 +32,29 @@ class Drive:
         return result
 
 
+def words_of(line: str) -> list[str]:
+    """As a shell splits a line; a word that begins with # begins a remark. Raises ValueError."""
+    if "\0" in line:
+        raise ValueError("a zero byte")
+    lexer = shlex.shlex(line, posix=True)
+    lexer.whitespace_split = True
+    lexer.commenters = ""
+    words = list(lexer)
+    remark = next((i for i, word in enumerate(words) if word.startswith("#")), len(words))
+    return words[:remark]
+
+
 def read_drives(path: Path) -> list[Drive]:
     """The drives of a list, in its order. Raises FleetError, with the line, for one that cannot be run."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
         raise FleetError(f"the list '{path}' cannot be read: {getattr(problem, 'strerror', None) or problem}") from None
     drives: list[Drive] = []
     for number, line in enumerate(lines, start=1):
         where = f"{path}:{number}"
         try:
-            words = shlex.split(line, comments=True)
+            words = words_of(line)
         except ValueError as problem:
             raise FleetError(f"{where}: {problem}") from None
         if not words:
