@@ -2,11 +2,11 @@
 
 #include <cerrno>
 #include <cstring>
-#include <memory>
 
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "semantic_mht_slam/bags/guarded_bag.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/output_file.h"
 
@@ -33,13 +33,12 @@ class MemoryFile {
 
 /// Lets `fill` write a bag.
 void writeBag(const std::string& path, const std::function<void(rosbag::Bag&)>& fill) {
-  auto bag = std::make_unique<rosbag::Bag>();
+  GuardedBag bag(path, rosbag::bagmode::Write);
   try {
-    bag->open(path, rosbag::bagmode::Write);
     fill(*bag);
     bag->close();
   } catch (const rosbag::BagException&) {
-    static_cast<void>(bag.release());  // see above: what cannot be written cannot be destroyed
+    bag.leave();  // see above: what cannot be written cannot be destroyed
     throw;
   }
 }

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include <console_bridge/console.h>
-#include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <std_msgs/Time.h>
 #include <tf2/buffer_core.h>
@@ -11,6 +10,7 @@
 
 #include "semantic_mht_slam/bags/bag_file.h"
 #include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/guarded_bag.h"
 #include "semantic_mht_slam/bags/objects_gate.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/text.h"
@@ -47,9 +47,9 @@ class BagReader {
   Recording read() {
     const QuietTf quiet;
     try {
-      rosbag::Bag bag(path_, rosbag::bagmode::Read);
-      readBefore(bag);
-      readInput(bag);
+      GuardedBag bag(path_, rosbag::bagmode::Read);
+      readBefore(*bag);
+      readInput(*bag);
     } catch (const rosbag::BagUnindexedException&) {
       throw InputError(path_ + ": the bag has no index: it is truncated or was not closed (rosbag reindex may help)");
     } catch (const rosbag::BagException& error) {

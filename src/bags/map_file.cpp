@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <string_view>
 
-#include <rosbag/bag.h>
 #include <rosbag/view.h>
 
 #include <semantic_mht_slam/MapHeader.h>
@@ -13,6 +12,7 @@
 #include "semantic_mht_slam/bags/atomic_bag.h"
 #include "semantic_mht_slam/bags/bag_limits.h"
 #include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/guarded_bag.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/output_file.h"
@@ -125,10 +125,10 @@ class MapReader {
   LoadedMap read() {
     try {
       requireSoundBag(path_, keep_reading_);
-      rosbag::Bag bag(path_, rosbag::bagmode::Read);
-      const MapHeader header = readHeader(bag);
+      GuardedBag bag(path_, rosbag::bagmode::Read);
+      const MapHeader header = readHeader(*bag);
       check(header);
-      return readSections(bag, header);
+      return readSections(*bag, header);
     } catch (const rosbag::BagUnindexedException&) {
       fail("the file is truncated");
     } catch (const rosbag::BagException& error) {
@@ -231,8 +231,8 @@ void requireMapOrNothing(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
   try {
     requireSoundRecords(path);
-    const rosbag::Bag bag(path, rosbag::bagmode::Read);
-    if (hasMapHeader(bag)) return;
+    GuardedBag bag(path, rosbag::bagmode::Read);
+    if (hasMapHeader(*bag)) return;
   } catch (const InputError&) {  // no bag, or one that would take the memory
   } catch (const rosbag::BagException&) {
   }

@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLongestName = 64;
+
 FileVersion versionOf(const std::string& path) {
   std::error_code error;
   FileVersion version;
@@ -35,19 +37,31 @@ std::string nameOf(const std::string& path) {
 }
 
 void requireName(const std::string& name) {
-  if (name.empty() || !std::all_of(name.begin(), name.end(), isNameCharacter)) {
-    throw InputError("'" + name + "' is no name of a map: letters, digits, '_' and '-' only");
+  if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), isNameCharacter)) {
+    throw InputError("'" + name + "' is no name of a map: at most 64 letters, digits, '_' and '-'");
   }
+}
+
+/// Without links, so that a file has one name.
+std::string canonical(const std::string& path) {
+  std::error_code error;
+  const fs::path result = fs::weakly_canonical(path, error);
+  return error ? path : result.string();
 }
 
 std::vector<std::string> mapFilesIn(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    if (entry->path().extension() == ".bag" && entry->is_regular_file()) files.push_back(entry->path().string());
+    const fs::path& path = entry->path();
+    std::error_code of_entry;
+    const bool is_folder = entry->is_directory(of_entry);
+    if (path.extension() != ".bag" || path.filename().string().front() == '.' || is_folder) continue;
+    files.push_back(canonical(path.string()));
   }
   if (error) throw InputError("server.folder: '" + folder + "': " + error.message());
   std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
@@ -71,45 +85,81 @@ std::string ServedMaps::add(const std::string& path, const std::string& name) {
   if (!name.empty()) requireName(name);
   ServedMap map;
   map.name = name;
-  map.source = path;
+  map.source = canonical(path);
   map.version = versionOf(path);
   map.parts = read(path);
   return take(std::move(map));
 }
 
 void ServedMaps::takeFolder(const std::string& folder) {
-  for (const std::string& path : mapFilesIn(folder)) {
+  const std::vector<std::string> files = mapFilesIn(folder);
+  forgetVanished(folder, files);
+  for (const std::string& path : files) {
     ServedMap map;
     map.source = path;
     try {
       map.version = versionOf(path);
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        if (std::any_of(maps_.begin(), maps_.end(),
-                        [&](const ServedMap& known) { return known.source == path && known.version == map.version; })) {
-          continue;
-        }
-      }
+      if (isKnown(map)) continue;
       map.parts = read(path);
     } catch (const InputError& error) {
       if (!keep_reading_()) return;
       map.problem = error.what();
+      if (isKnown(map)) continue;
     }
     take(std::move(map));
   }
 }
 
+/// What could not be used and is no longer there says nothing.
+void ServedMaps::forgetVanished(const std::string& folder, const std::vector<std::string>& files) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto is_gone = [&](const ServedMap& map) {
+    return !map.parts && fs::path(map.source).parent_path() == canonical(folder) &&
+           std::find(files.begin(), files.end(), map.source) == files.end();
+  };
+  const auto gone = std::remove_if(maps_.begin(), maps_.end(), is_gone);
+  if (gone != maps_.end()) ++news_;
+  maps_.erase(gone, maps_.end());
+}
+
+bool ServedMaps::isKnown(const ServedMap& map) const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::any_of(maps_.begin(), maps_.end(), [&](const ServedMap& known) {
+    return known.source == map.source && known.version == map.version;
+  });
+}
+
+ServedMap* ServedMaps::fromSource(const std::string& source) {
+  const auto found =
+      std::find_if(maps_.begin(), maps_.end(), [&](const ServedMap& map) { return map.source == source; });
+  return found == maps_.end() ? nullptr : &*found;
+}
+
 std::string ServedMaps::take(ServedMap map) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto known = std::find_if(maps_.begin(), maps_.end(), [&](const ServedMap& other) {
-    return map.name.empty() ? other.source == map.source : other.name == map.name;
-  });
-  map.generation = ++changes_;
-  if (known == maps_.end()) {
-    if (map.name.empty()) map.name = freeName(nameOf(map.source));
+  ++news_;
+  ServedMap* known = fromSource(map.source);
+  if (known != nullptr && !map.name.empty() && map.name != known->name) {
+    throw InputError("'" + map.source + "' is here already, as '" + known->name + "'");
+  }
+  if (known == nullptr) {
+    const std::string wanted = map.name.empty() ? nameOf(map.source) : map.name;
+    if (!map.name.empty() && freeName(wanted) != wanted) {
+      throw InputError("there is another map '" + wanted + "'; forget_map makes room for this one");
+    }
+    map.name = freeName(wanted);
+    if (map.parts) ++changes_;
+    map.generation = news_;
     maps_.push_back(std::move(map));
     return maps_.back().name;
   }
+  if (!map.parts && known->parts) {
+    known->version = map.version;
+    known->problem = "has changed, and cannot be read any more (what it was stays): " + map.problem;
+    return known->name;
+  }
+  if (map.parts || known->parts) ++changes_;
+  map.generation = news_;
   map.name = known->name;
   *known = std::move(map);
   return known->name;
@@ -117,25 +167,28 @@ std::string ServedMaps::take(ServedMap map) {
 
 void ServedMaps::put(ServedMap map) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto known =
-      std::find_if(maps_.begin(), maps_.end(), [&](const ServedMap& other) { return other.name == map.name; });
-  map.generation = ++changes_;
-  if (known == maps_.end()) {
+  ++changes_;
+  map.generation = ++news_;
+  ServedMap* known = fromSource(map.source);
+  if (known == nullptr) {
+    map.name = freeName(map.name);
     maps_.push_back(std::move(map));
   } else {
+    map.name = known->name;
     map.is_removed = known->is_removed;
     *known = std::move(map);
   }
 }
 
-void ServedMaps::retire(const std::string& name) {
+void ServedMaps::retire(const std::string& source) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (ServedMap& map : maps_) {
-    if (map.name != name) continue;
-    map.name = freeName(name + "_before");
-    map.frame.clear();
-    map.generation = ++changes_;
-  }
+  ServedMap* map = fromSource(source);
+  if (map == nullptr) return;
+  map->name = freeName(map->name + "_before");
+  map->source += " (before)";
+  map->frame.clear();
+  ++changes_;
+  map->generation = ++news_;
 }
 
 std::string ServedMaps::freeName(const std::string& wanted) const {
@@ -160,6 +213,7 @@ void ServedMaps::restore(const std::string& name) {
   if (!map.is_removed) throw InputError("the map '" + name + "' was not removed");
   map.is_removed = false;
   ++changes_;
+  ++news_;
 }
 
 void ServedMaps::remove(const std::string& name) {
@@ -168,6 +222,7 @@ void ServedMaps::remove(const std::string& name) {
   if (map.is_removed) throw InputError("the map '" + name + "' is removed already");
   map.is_removed = true;
   ++changes_;
+  ++news_;
 }
 
 void ServedMaps::forget(const std::string& name) {
@@ -175,6 +230,7 @@ void ServedMaps::forget(const std::string& name) {
   const ServedMap& map = named(name);
   maps_.erase(maps_.begin() + (&map - maps_.data()));
   ++changes_;
+  ++news_;
 }
 
 std::vector<ServedMap> ServedMaps::list() const {
@@ -185,6 +241,11 @@ std::vector<ServedMap> ServedMaps::list() const {
 std::size_t ServedMaps::changes() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return changes_;
+}
+
+std::size_t ServedMaps::news() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return news_;
 }
 
 }  // namespace semantic_mht_slam

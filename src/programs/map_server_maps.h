@@ -39,19 +39,20 @@ class ServedMaps {
  public:
   ServedMaps(SystemConfig config, SlamConfig slam_config, ClassTable classes, KeepReading keep_reading);
 
-  /// Reads a file; the map takes the place of the one that was read from it before, or of that name. Returns its name.
-  /// Throws InputError; what was there stays.
+  /// Reads a file; the map takes the place of the one that was read from it before. Returns its name. Throws
+  /// InputError, also for a name that another map has; what was there stays.
   std::string add(const std::string& path, const std::string& name);
 
-  /// Takes the new and changed map files of a folder. One that cannot be used is listed with the problem. Throws
-  /// InputError for a folder that cannot be listed.
+  /// Takes the new and changed map files of a folder. One that cannot be used is listed with the problem; what was read
+  /// of it before stays. Throws InputError for a folder that cannot be listed.
   void takeFolder(const std::string& folder);
 
-  /// Takes the newest state of a robot's map in place of the one before of that name. A map that was removed stays so.
+  /// Takes the newest state of a robot's map in place of the one before from that source. A map that was removed stays
+  /// so.
   void put(ServedMap map);
 
-  /// The map of that name, if there is one, goes on under another name: its robot has begun a new one.
-  void retire(const std::string& name);
+  /// The map from that source, if there is one, goes on under another name: its robot has begun a new one.
+  void retire(const std::string& source);
 
   /// Brings back a map that was removed. These three throw InputError if there is none of that name.
   void restore(const std::string& name);
@@ -64,9 +65,15 @@ class ServedMaps {
   /// Another number whenever what there is to merge has changed.
   std::size_t changes() const;
 
+  /// The same whenever anything in the list has.
+  std::size_t news() const;
+
  private:
   std::shared_ptr<const SlamParts> read(const std::string& path) const;
   std::string take(ServedMap map);
+  void forgetVanished(const std::string& folder, const std::vector<std::string>& files);
+  bool isKnown(const ServedMap& map) const;
+  ServedMap* fromSource(const std::string& source);
   std::string freeName(const std::string& wanted) const;
   ServedMap& named(const std::string& name);
 
@@ -77,6 +84,7 @@ class ServedMaps {
   mutable std::mutex mutex_;
   std::vector<ServedMap> maps_;
   std::size_t changes_ = 0;
+  std::size_t news_ = 0;
 };
 
 }  // namespace semantic_mht_slam

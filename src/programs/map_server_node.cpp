@@ -1,6 +1,9 @@
 #include "map_server_node.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "semantic_mht_slam/common/error.h"
@@ -102,11 +105,33 @@ void MapServerNode::advertiseServices(ros::NodeHandle private_handle) {
   advertise("save_map", SaveCall([this, folder](SaveMap::Request& request, SaveMap::Response& response) {
               return answer("save_map", response, [&] {
                 const std::string path = mapPath(request.path, folder);
+                requireOutsideOfFolder(path);
+                waitUntilMerged();
                 const SavedMap map = world()->saved();
                 response.bytes = writeMapFile(path, map, setup_.system, world_settings_.classes);
                 return std::to_string(map.landmarks.size()) + " landmarks are in '" + path + "'";
               });
             }));
+}
+
+/// Or the server would take its own result for one more map.
+void MapServerNode::requireOutsideOfFolder(const std::string& path) const {
+  std::error_code error;
+  const std::filesystem::path into = std::filesystem::path(path).parent_path();
+  if (setup_.server.folder.empty() || !std::filesystem::equivalent(into, setup_.server.folder, error)) return;
+  throw InputError("'" + path + "' is in the folder whose maps are joined (server.folder)");
+}
+
+/// What was asked for before has its effect.
+void MapServerNode::waitUntilMerged() {
+  const std::size_t asked = maps_.changes();
+  while (merged_changes_ < asked) {
+    if (isClosing()) throw InputError("the server ends");
+    if (merging_failures_.status().in_a_row > 0) {
+      throw InputError("the maps cannot be merged: " + merging_failures_.status().newest);
+    }
+    ros::WallDuration(0.02).sleep();
+  }
 }
 
 std::shared_ptr<const World> MapServerNode::world() const {
@@ -132,8 +157,18 @@ void MapServerNode::work() {
         robot->takeNews(maps_);
       });
     }
-    if (maps_.changes() != merged_changes_ || is_first) failures_.run("merging", [this] { mergeAndPublish(); });
-    is_first = false;
+    const ros::WallTime now = ros::WallTime::now();
+    if (is_first || (maps_.changes() != merged_changes_ && now >= next_merge_)) {
+      is_first = false;
+      if (!merging_failures_.run("merging", [this] { mergeAndPublish(); })) {
+        ROS_ERROR_STREAM("map_server: " << merging_failures_.status().newest << "; the world stays as it was");
+        const auto in_a_row = std::min<std::size_t>(merging_failures_.status().in_a_row, 6);
+        next_merge_ = now + ros::WallDuration(static_cast<double>(1U << in_a_row));
+        publishStatus(false);
+      }
+    } else if (maps_.news() != published_news_) {
+      publishStatus(false);
+    }
     std::unique_lock<std::mutex> lock(wake_mutex_);
     wake_.wait_for(lock, kPeriod, [this] { return is_woken_; });
     is_woken_ = false;
@@ -155,12 +190,10 @@ void MapServerNode::lookAtFolder() {
 }
 
 void MapServerNode::mergeAndPublish() {
-  merged_changes_ = maps_.changes();
+  const std::size_t changes = maps_.changes();
   const std::vector<ServedMap> served = maps_.list();
   publishStatus(true);
-  for (const ServedMap& map : served) {
-    if (std::exchange(generations_[map.name], map.generation) != map.generation) memory_.forget(map.name);
-  }
+  forgetChanged(served);
   std::shared_ptr<const World> next;
   try {
     next = std::make_shared<const World>(world_settings_, served, memory_, [this](const std::string&) {
@@ -173,13 +206,25 @@ void MapServerNode::mergeAndPublish() {
     const std::lock_guard<std::mutex> lock(mutex_);
     world_ = next;
   }
+  merged_changes_ = changes;
   map_publisher_.publish(next->map());
   markers_publisher_.publish(next->markers());
   transforms_.sendTransform(next->transforms());
   publishStatus(false);
 }
 
+void MapServerNode::forgetChanged(const std::vector<ServedMap>& served) {
+  std::map<std::string, std::size_t> now;
+  for (const ServedMap& map : served) now[map.name] = map.generation;
+  for (const auto& [name, generation] : generations_) {
+    const auto found = now.find(name);
+    if (found == now.end() || found->second != generation) memory_.forget(name);
+  }
+  generations_ = std::move(now);
+}
+
 void MapServerNode::publishStatus(bool is_merging) {
+  published_news_ = maps_.news();
   MergeStatus status = world()->status(maps_.list());
   status.is_merging = is_merging;
   status_publisher_.publish(status);
@@ -197,16 +242,19 @@ void MapServerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& wrappe
     if (!map.reason.empty()) problems += (problems.empty() ? "" : "; ") + map.name + ": " + map.reason;
   }
   const FailureStatus failures = failures_.status();
-  if (failures.in_a_row > 0) problems += (problems.empty() ? "" : "; ") + failures.newest;
-  wrapper.summary(failures.isLasting() ? DiagnosticStatus::ERROR
-                  : problems.empty()   ? DiagnosticStatus::OK
-                                       : DiagnosticStatus::WARN,
+  const FailureStatus merging = merging_failures_.status();
+  for (const FailureStatus& one : {failures, merging}) {
+    if (one.in_a_row > 0) problems += (problems.empty() ? "" : "; ") + one.newest;
+  }
+  wrapper.summary(failures.isLasting() || merging.isLasting() ? DiagnosticStatus::ERROR
+                  : problems.empty()                          ? DiagnosticStatus::OK
+                                                              : DiagnosticStatus::WARN,
                   std::to_string(joined) + " of " + std::to_string(status_.maps.size()) + " maps are in one" +
                       (status_.is_merging ? ", merging" : "") + (problems.empty() ? "" : ": " + problems));
   wrapper.add("maps", status_.maps.size());
   wrapper.add("joined", joined);
   wrapper.add("landmarks", status_.landmarks);
-  wrapper.add("unexpected failures", failures.count);
+  wrapper.add("unexpected failures", failures.count + merging.count);
 }
 
 }  // namespace semantic_mht_slam

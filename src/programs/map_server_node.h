@@ -41,7 +41,10 @@ class MapServerNode {
   void lookAtFolder();
   void wake();
   void mergeAndPublish();
+  void forgetChanged(const std::vector<ServedMap>& served);
   void publishStatus(bool is_merging);
+  void requireOutsideOfFolder(const std::string& path) const;
+  void waitUntilMerged();
   std::shared_ptr<const World> world() const;
   void advertiseServices(ros::NodeHandle private_handle);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& wrapper) const;
@@ -60,7 +63,10 @@ class MapServerNode {
   MergeStatus status_;
   std::string folder_problem_;
   FailureGuard failures_;
-  std::size_t merged_changes_ = 0;  ///< the worker's
+  FailureGuard merging_failures_;
+  std::atomic<std::size_t> merged_changes_ = 0;
+  std::size_t published_news_ = 0;  ///< the worker's, as the next
+  ros::WallTime next_merge_;        ///< not before, after one that failed
   std::atomic<bool> is_closing_ = false;
   ros::Publisher map_publisher_;
   ros::Publisher markers_publisher_;

@@ -102,7 +102,7 @@ void RobotFeed::takeNews(ServedMaps& maps) {
   served.source = topic_;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (std::exchange(begins_anew_, false)) maps.retire(name_);
+    if (std::exchange(begins_anew_, false)) maps.retire(topic_);
     if (!std::exchange(has_changed_, false)) return;
     map = map_;
     served.frame = frame_;

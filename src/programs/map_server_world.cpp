@@ -91,6 +91,19 @@ visualization_msgs::Marker World::path(std::size_t member, double symbol_m) cons
   return marker;
 }
 
+/// The name of a map at its beginning.
+visualization_msgs::Marker World::label(const visualization_msgs::Marker& path, double symbol_m) {
+  visualization_msgs::Marker marker = path;
+  marker.id = 1;
+  marker.type = visualization_msgs::Marker::TEXT_VIEW_FACING;
+  marker.text = path.ns;
+  marker.scale.z = 8.0 * symbol_m;
+  marker.pose.position = path.points.front();
+  marker.pose.position.z += 4.0 * symbol_m;
+  marker.points.clear();
+  return marker;
+}
+
 visualization_msgs::MarkerArray World::markers() const {
   const SemanticMap shown = map();
   const double factor = isEmpty() ? 1.0 : joined().parts.range_factor;
@@ -99,6 +112,7 @@ visualization_msgs::MarkerArray World::markers() const {
   if (isEmpty()) return array;
   for (std::size_t member = 0; member < joined().members.size(); ++member) {
     array.markers.push_back(path(member, symbol_m));
+    array.markers.push_back(label(array.markers.back(), symbol_m));
   }
   return array;
 }
@@ -129,6 +143,7 @@ MapStatus World::statusOf(const ServedMap& served) const {
     if (!is_in) status.reason = result_.reasons[place];
     if (!is_in && status.reason.empty()) status.reason = "belongs to other maps that are apart from the largest group";
   }
+  if (served.parts && !served.problem.empty()) status.reason = served.problem;
   return status;
 }
 

@@ -62,6 +62,7 @@ class World {
   const JoinedMap& joined() const { return *result_.groups.front().joined; }
   MapStatus statusOf(const ServedMap& served) const;
   visualization_msgs::Marker path(std::size_t member, double symbol_m) const;
+  static visualization_msgs::Marker label(const visualization_msgs::Marker& path, double symbol_m);
 
   const WorldSettings settings_;
   std::vector<std::shared_ptr<const SlamParts>> held_;

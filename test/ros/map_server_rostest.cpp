@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <fstream>
+#include <future>
 
 #include <gtest/gtest.h>
 
@@ -162,8 +163,61 @@ TEST(MapServerTest, WhatCannotBeUsedIsNamedAndTheRestGoesOn) {
   EXPECT_NE(missing.message.find("No such file"), std::string::npos) << missing.message;
   EXPECT_FALSE(server.add(folder / "good.bag", "a/b").success) << "no name";
   fs::remove(folder / "bad.bag");
+  ASSERT_TRUE(server.comesTo({{"good", kJoined}})) << "it is gone";
+  fs::create_symlink("loop.bag", folder / "loop.bag");
   drives().second.write(folder / "bad.bag");
-  ASSERT_TRUE(server.comesTo({{"bad", kJoined}, {"good", kJoined}})) << "mended";
+  ASSERT_TRUE(server.comesTo({{"bad", kJoined}, {"good", kJoined}, {"loop", kUnusable}})) << "mended";
+  const std::size_t landmarks = server.status().landmarks;
+  std::ofstream(folder / "bad.bag", std::ios::trunc) << "no bag any more";
+  EXPECT_TRUE(waitFor([&] { return server.map("bad").reason.find("what it was stays") != std::string::npos; }));
+  EXPECT_EQ(server.status().landmarks, landmarks);
+}
+
+TEST(MapServerTest, OneFileIsOneMap) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "maps");
+  drives().first.write(folder / "maps/a.bag");
+  fs::create_symlink(folder / "maps", folder / "link");
+  RunningServer server("once", {"_server/folder:=" + folder / "link", "_server/maps:=" + folder / "maps/a.bag"});
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}}));
+  EXPECT_TRUE(server.add(folder / "link/a.bag").success) << "read again";
+  const AddMap::Response again = server.add(folder / "link/a.bag", "b");
+  EXPECT_FALSE(again.success);
+  EXPECT_NE(again.message.find("is here already, as 'a'"), std::string::npos) << again.message;
+  drives().second.write(folder / "b.bag");
+  EXPECT_FALSE(server.add(folder / "b.bag", "a").success) << "another map has the name";
+  SaveMap::Request request;
+  request.path = folder / "link/world.bag";
+  const SaveMap::Response own = server.call<SaveMap>("save_map", request);
+  EXPECT_FALSE(own.success);
+  EXPECT_NE(own.message.find("the folder whose maps are joined"), std::string::npos) << own.message;
+}
+
+TEST(MapServerTest, ASavedWorldIsThatOfTheCallsBefore) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "a.bag");
+  drives().second.write(folder / "b.bag");
+  RunningServer server("at_once", {"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"});
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
+  SaveMap::Request request;
+  request.path = folder / "all.bag";
+  EXPECT_TRUE(server.remove("b").success);
+  EXPECT_EQ(server.call<SaveMap>("save_map", request).message.find(std::to_string(drives().first.landmarks()) + " "),
+            0U);
+}
+
+TEST(MapServerTest, BagsAreReadAndWrittenByTwoThreads) {
+  const TemporaryFolder folder;
+  drives().first.write(folder / "a.bag");
+  RunningServer server("busy", {"_server/maps:=" + folder / "a.bag"});
+  ASSERT_TRUE(server.comesTo({{"a", kJoined}}));
+  auto adding = std::async(std::launch::async, [&] {
+    for (int i = 0; i < 25; ++i) EXPECT_TRUE(server.add(folder / "a.bag").success);
+  });
+  SaveMap::Request request;
+  request.path = folder / "world.bag";
+  for (int i = 0; i < 25; ++i) EXPECT_TRUE(server.call<SaveMap>("save_map", request).success) << i;
+  adding.get();
 }
 
 TEST(MapServerTest, ItDoesNotBeginWithWhatCannotBeUsed) {
