@@ -7,7 +7,10 @@ namespace semantic_mht_slam {
 
 std::vector<MixtureLandmark> landmarksOf(const JoinedMap& joined) {
   const SlamParts& parts = joined.parts;
-  const MapGauge gauge{parts.start_cov, parts.mapper ? parts.mapper->scaleStddev() : 0.0};
+  const SlamParts& first = joined.members.front().map->parts();
+  const double scale_stddev =
+      first.mapper ? first.mapper->scaleStddev() : first.odometry.systematic.scale_translation.stddev;
+  const MapGauge gauge{parts.start_cov, scale_stddev};
   return landmarksOf(parts.map, parts.graph, uncertaintyOf(parts.map, parts.graph, gauge));
 }
 

@@ -46,7 +46,8 @@ class Rebuilding {
     fitParts(fitted, classes, parts_);
   }
 
-  void add(const MapDelta& delta, const std::vector<bool>& held) {
+  /// `odometry`: what is known of it by now.
+  void add(const MapDelta& delta, const std::vector<bool>& held, const OdometryModel& odometry) {
     if (delta.keyframes.empty()) throw InputError("a submap without a keyframe");
     const SubmapId id = parts_.map.submaps().nextId();
     if (delta.T_map_odom) {
@@ -63,7 +64,7 @@ class Rebuilding {
       noteSideBySide(seen, delta, keyframes.back().frame, submap);
     }
     const auto ids = parts_.map.add(std::make_shared<const Submap>(std::move(submap)), std::move(keyframes));
-    parts_.graph.add(parts_.map, ids, sightings, delta.odometry);
+    parts_.graph.add(parts_.map, ids, sightings, odometry);
     for (LoopClosureRecord closure : delta.closures) {
       const bool is_known =
           parts_.map.keyframes().has(closure.query_keyframe) && parts_.map.keyframes().has(closure.match_keyframe);
@@ -73,12 +74,13 @@ class Rebuilding {
       ++next_closure_;
       parts_.map.add(std::move(closure));
     }
-    parts_.odometry = delta.odometry;
+    parts_.odometry = odometry;
   }
 
   SlamParts finish() {
     parts_.graph.settle(parts_.map, true);
     parts_.driven = motionTo(parts_.map.keyframes().back());
+    parts_.mapper.reset();  // it has learned nothing
     return std::move(parts_);
   }
 
@@ -189,6 +191,7 @@ MapDelta deltaOf(const SlamParts& parts, SubmapId submap) {
   MapDelta delta;
   delta.end = finished.end;
   delta.odometry = parts.odometry;
+  if (parts.mapper) delta.odometry.systematic.scale_translation.stddev = parts.mapper->scaleStddev();
   delta.duplicates = finished.duplicates;
   std::map<LandmarkId, std::size_t> place;
   for (const KeyframeId k : parts.map.keyframesOf(submap)) {
@@ -232,7 +235,7 @@ SlamParts makeMap(const MapByDeltas& map, const SlamConfig& config, const ClassT
   if (map.deltas.empty()) throw InputError("has no finished submap");
   const SlamConfig fitted = map.range_factor == 1.0 ? config : fittedTo(config, map.range_factor);
   Rebuilding rebuilding(fitted, classes, map.range_factor);
-  for (const MapDelta& delta : map.deltas) rebuilding.add(delta, map.held);
+  for (const MapDelta& delta : map.deltas) rebuilding.add(delta, map.held, map.deltas.back().odometry);
   return rebuilding.finish();
 }
 

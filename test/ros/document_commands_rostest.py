@@ -143,7 +143,7 @@ class DocumentCommandsTest(unittest.TestCase):
     def test_a_map_server_takes_the_maps_of_a_folder(self):
         self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && mkdir maps && "
                       "cp result/map.bag maps/monday.bag")
-        self.start(self.one(f"roslaunch {PACKAGE} map_server.launch") + " rviz:=false")
+        self.start(self.one(f"roslaunch {PACKAGE} map_server.launch folder:=") + " rviz:=false")
         rospy.wait_for_service("/map_server/save_map", WAIT_S)
         self.assertTrue(rospy.wait_for_message("/world/map", SemanticMap, WAIT_S).landmarks)
         self.assertIn("monday", self.run_line(self.one("rostopic echo -n 1 /merge_status")))
@@ -161,7 +161,7 @@ class DocumentCommandsTest(unittest.TestCase):
 
         def check(line):
             line = self.own(line)
-            if re.search(r"(slam|localization|kitti|map_server)\.launch", line):
+            if re.search(r"(slam|localization|kitti|map_server|two_robots)\.launch", line):
                 line += " rviz:=false"
             with tempfile.NamedTemporaryFile("w+") as output:
                 launch = self.start(line, output)
