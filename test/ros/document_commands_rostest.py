@@ -44,6 +44,7 @@ class DocumentCommandsTest(unittest.TestCase):
                       "--set route.length=150 --output drive")
         self.bag = os.path.join(self.folder, "drive", "drive.bag")
         shutil.copy(self.bag, os.path.join(self.folder, "kitti_00.bag"))
+        os.mkdir(os.path.join(self.folder, "maps"))
 
     def own(self, line):
         """The line with names that there are here."""
@@ -141,7 +142,7 @@ class DocumentCommandsTest(unittest.TestCase):
         self.check_each(calls, check)
 
     def test_a_map_server_takes_the_maps_of_a_folder(self):
-        self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && mkdir maps && "
+        self.run_line(f"rosrun {PACKAGE} slam_offline --bag drive/drive.bag --output result && "
                       "cp result/map.bag maps/monday.bag")
         self.start(self.one(f"roslaunch {PACKAGE} map_server.launch folder:=") + " rviz:=false")
         rospy.wait_for_service("/map_server/save_map", WAIT_S)
