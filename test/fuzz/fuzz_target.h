@@ -18,6 +18,7 @@ FuzzTarget estimatorTarget();
 FuzzTarget g2oTarget();
 FuzzTarget mapSectionTarget();
 FuzzTarget mapStateTarget();
+FuzzTarget mapUpdateTarget();
 FuzzTarget messagesTarget();
 FuzzTarget scanTarget();
 FuzzTarget trajectoryTarget();

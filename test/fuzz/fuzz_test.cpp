@@ -41,9 +41,10 @@ TEST_P(FuzzTest, ChangedSeedsAreRefusedOrTaken) {
 INSTANTIATE_TEST_SUITE_P(Targets, FuzzTest,
                          testing::Values(FuzzCase{csvTarget, 3000}, FuzzCase{estimatorTarget, 60},
                                          FuzzCase{g2oTarget, 3000}, FuzzCase{mapSectionTarget, 300},
-                                         FuzzCase{mapStateTarget, 20}, FuzzCase{messagesTarget, 100},
-                                         FuzzCase{scanTarget, 500}, FuzzCase{trajectoryTarget, 3000},
-                                         FuzzCase{treeTarget, 300}, FuzzCase{yamlTarget, 500}),
+                                         FuzzCase{mapStateTarget, 20}, FuzzCase{mapUpdateTarget, 60},
+                                         FuzzCase{messagesTarget, 100}, FuzzCase{scanTarget, 500},
+                                         FuzzCase{trajectoryTarget, 3000}, FuzzCase{treeTarget, 300},
+                                         FuzzCase{yamlTarget, 500}),
                          [](const auto& instance) { return instance.param.target().name; });
 
 }  // namespace

@@ -1,0 +1,138 @@
+// What the map server takes from a robot: good updates, in which the bytes change fields, and the map that they make.
+#include <memory>
+
+#include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/merging/map_delta.h"
+#include "semantic_mht_slam/ros/map_update_conversions.h"
+
+#include "fuzz/fuzz_target.h"
+#include "fuzz/fuzzed_file.h"
+#include "fuzz/fuzzed_values.h"
+#include "support/square_drive.h"
+
+namespace semantic_mht_slam {
+namespace {
+
+/// The updates of a drive that closes a loop.
+struct GoodUpdates {
+  const SlamConfig config = defaultsOf(Method::kDpmhm);
+  const ClassTable classes = makeStreetClasses();
+  std::vector<MapUpdate> updates;
+
+  GoodUpdates() {
+    Slam slam(config, classes);
+    SquareDrive(7).feed(slam, 0, 560);
+    slam.finish();
+    for (const SubmapId id : slam.map().submaps().ids()) updates.push_back(toMessage(slam.parts(), id, classes));
+  }
+};
+
+class ChangedUpdates {
+ public:
+  ChangedUpdates(const GoodUpdates& good, const std::string& bytes) : updates_(good.updates), values_(bytes) {
+    while (!values_.isEmpty()) change(updates_[values_.byte() % updates_.size()]);
+  }
+
+  const std::vector<MapUpdate>& updates() const { return updates_; }
+
+ private:
+  template <class List>
+  auto& oneOf(List& list) {
+    if (list.empty()) list.emplace_back();
+    return list[values_.byte() % list.size()];
+  }
+
+  float real() { return static_cast<float>(values_.number()); }
+
+  void change(MapUpdate& update) {
+    switch (values_.byte() % 16) {
+      case 0:
+        update.range_factor = real();
+        break;
+      case 1:
+        update.resolution = real();
+        break;
+      case 2:
+        oneOf(update.odometry_model) = values_.byte();
+        break;
+      case 3:
+        update.begins_session = true;
+        update.map_odom = toMessage(values_.pose());
+        break;
+      case 4:
+        update.begin = toRosTime(values_.stamp(toStamp(update.begin)));
+        break;
+      case 5:
+        update.driven = values_.number();
+        update.turned = values_.number();
+        break;
+      case 6:
+        update.odom_base = toMessage(values_.pose());
+        break;
+      case 7:
+        oneOf(update.landmarks).id = values_.byte();
+        break;
+      case 8:
+        oneOf(update.landmarks).class_index = values_.byte();
+        break;
+      case 9:
+        oneOf(update.duplicates) = values_.byte();
+        break;
+      case 10:
+        oneOf(update.keyframes).after = real();
+        break;
+      case 11:
+        oneOf(update.keyframes).position[values_.byte() % 3] = real();
+        break;
+      case 12:
+        oneOf(update.keyframes).rotation[values_.byte() % 3] = real();
+        break;
+      case 13:
+        changeSighting(oneOf(update.sightings));
+        break;
+      case 14:
+        changeClosure(oneOf(update.closures));
+        break;
+      default:
+        oneOf(update.closures_held) = values_.byte();
+        break;
+    }
+  }
+
+  void changeSighting(MapUpdateSighting& sighting) {
+    sighting.landmark = values_.byte();
+    sighting.position[values_.byte() % 3] = static_cast<std::int16_t>(256 * values_.byte());
+    sighting.stddev[values_.byte() % 3] = values_.byte();
+  }
+
+  void changeClosure(MapUpdateClosure& closure) {
+    closure.source = values_.byte() % 5;
+    closure.query_keyframe = values_.byte();
+    closure.match_keyframe = values_.byte();
+    closure.position[values_.byte() % 3] = real();
+    closure.covariance[values_.byte() % 21] = real();
+    oneOf(closure.pairs) = values_.byte();
+  }
+
+  std::vector<MapUpdate> updates_;
+  FuzzedValues values_;
+};
+
+}  // namespace
+
+FuzzTarget mapUpdateTarget() {
+  const auto good = std::make_shared<GoodUpdates>();
+  const auto run = [good](const std::string& bytes) {
+    const ChangedUpdates changed(*good, bytes);
+    return readOrRefuse([&] {
+      MapByDeltas map;
+      for (const MapUpdate& update : changed.updates()) map.deltas.push_back(fromMessage(update, good->classes));
+      map.range_factor = changed.updates().front().range_factor;
+      map.held = heldClosures(changed.updates().back());
+      makeMap(map, good->config, good->classes);
+    });
+  };
+  return {"map_update", run, {"", std::string("\x01\x0b\x02\x01\x66", 5), std::string("\x00\x0f\x00\xff", 4)}};
+}
+
+}  // namespace semantic_mht_slam
