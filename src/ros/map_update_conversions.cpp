@@ -6,6 +6,7 @@
 
 #include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/common/error.h"
+#include "semantic_mht_slam/common/ros_time.h"
 #include "semantic_mht_slam/common/state_archive.h"
 #include "semantic_mht_slam/common/state_checks.h"
 
@@ -192,6 +193,7 @@ void readKeyframes(const MapUpdate& message, MapDelta& delta) {
       refuse("keyframes", "one before the first");
     }
     read.stamp = begin + stampFromSeconds(keyframe.after);
+    if (!isRosTime(read.stamp)) refuse("begin", "at the end of the time of ROS");
     read.driven = {message.driven + keyframe.driven, message.turned + keyframe.turned};
     read.T_odom_base = T_odom_first * Pose{expRotation(readVector("keyframes", keyframe.rotation)),
                                            readVector("keyframes", keyframe.position)};

@@ -60,7 +60,7 @@ class ChangedUpdates {
         update.map_odom = toMessage(values_.pose());
         break;
       case 4:
-        update.begin = toRosTime(values_.stamp(toStamp(update.begin)));
+        update.begin.sec = values_.byte() << 24U;
         break;
       case 5:
         update.driven = values_.number();

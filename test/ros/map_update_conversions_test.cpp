@@ -106,6 +106,10 @@ TEST_F(MapUpdateTest, HostileMessagesAreRefusedByTheirField) {
     update.begins_session = true;
     update.map_odom.position.x = 1e300;
   });
+  expectRefused("begin", [](MapUpdate& update) {
+    update.begin.sec = 4294967295U;
+    update.keyframes.back().after = 1000.0F;
+  });
   expectRefused("driven", [](MapUpdate& update) { update.driven = -1.0; });
   expectRefused("landmarks", [](MapUpdate& update) { update.landmarks[0].class_index = 200; });
   expectRefused("landmarks", [](MapUpdate& update) { update.landmarks[1].id = update.landmarks[0].id; });
