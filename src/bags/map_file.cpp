@@ -13,6 +13,7 @@
 #include "semantic_mht_slam/bags/bag_limits.h"
 #include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/bags/guarded_bag.h"
+#include "semantic_mht_slam/common/digest.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/output_file.h"
@@ -24,14 +25,6 @@ constexpr const char* kHeaderTopic = "/map_header";
 constexpr const char* kSectionTopic = "/map_section";
 constexpr const char* kMapTopic = "/map";
 constexpr const char* kTrajectoryTopic = "/trajectory";
-
-/// FNV-1a.
-template <class Bytes>
-std::uint64_t digestOf(const Bytes& bytes) {
-  std::uint64_t value = 0xCBF29CE484222325ULL;
-  for (const auto byte : bytes) value = (value ^ static_cast<std::uint8_t>(byte)) * 0x100000001B3ULL;
-  return value;
-}
 
 /// Wherever the submap evaluator's tree was found, it is the same by its name.
 std::string parametersOf(SlamConfig config) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "semantic_mht_slam/common/digest.h"
 #include "semantic_mht_slam/common/state_archive.h"
 
 namespace semantic_mht_slam {
@@ -21,13 +22,6 @@ std::uint64_t rotateLeft(std::uint64_t x, int k) {
   return (x << k) | (x >> (64 - k));
 }
 
-/// FNV-1a.
-std::uint64_t hash(std::string_view text) {
-  std::uint64_t value = 0xCBF29CE484222325ULL;
-  for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
-  return value;
-}
-
 }  // namespace
 
 Rng::Rng(std::uint64_t seed) : seed_(seed) {
@@ -36,7 +30,7 @@ Rng::Rng(std::uint64_t seed) : seed_(seed) {
 
 Rng Rng::fork(std::string_view label, std::uint64_t index) const {
   std::uint64_t mixed = seed_;
-  mixed = splitMix64(mixed) ^ hash(label);
+  mixed = splitMix64(mixed) ^ digestOf(label);
   mixed = splitMix64(mixed) ^ index;
   return Rng(splitMix64(mixed));
 }

@@ -1,7 +1,6 @@
 #include "semantic_mht_slam/merging/joined_map.h"
 #include "semantic_mht_slam/slam/map_uncertainty.h"
 #include "semantic_mht_slam/slam/surroundings.h"
-#include "semantic_mht_slam/slam/trajectory_record.h"
 
 namespace semantic_mht_slam {
 
@@ -14,10 +13,9 @@ std::vector<MixtureLandmark> landmarksOf(const JoinedMap& joined) {
   return landmarksOf(parts.map, parts.graph, uncertaintyOf(parts.map, parts.graph, gauge));
 }
 
-std::vector<std::vector<StampedPose>> trajectoriesOf(const JoinedMap& joined) {
-  const std::vector<StampedPose> all = trajectoryOf(joined.parts.sessions.record(joined.parts.map));
+std::vector<std::vector<StampedPose>> cutByMember(const JoinedMap& joined, const std::vector<StampedPose>& trajectory) {
   std::vector<std::vector<StampedPose>> result;
-  auto begin = all.begin();
+  auto begin = trajectory.begin();
   for (const JoinedMember& member : joined.members) {
     const auto count = member.map->parts().sessions.record(member.map->map()).odometry.size();
     const auto end = begin + static_cast<std::ptrdiff_t>(count);

@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/finished_map.h"
 #include "semantic_mht_slam/common/error.h"
 
 namespace semantic_mht_slam {
@@ -74,9 +74,7 @@ ServedMaps::ServedMaps(SystemConfig config, SlamConfig slam_config, ClassTable c
       keep_reading_(std::move(keep_reading)) {}
 
 std::shared_ptr<const SlamParts> ServedMaps::read(const std::string& path) const {
-  LoadedMap map = readMapFile(path, config_, classes_, keep_reading_);
-  auto slam = std::make_shared<Slam>(slam_config_, classes_, std::move(map.state), keep_reading_);
-  if (!slam->parts().waiting.empty() || (slam->parts().mapper && slam->parts().mapper->isOpen())) slam->finish();
+  const std::shared_ptr<const Slam> slam = readFinishedMap(path, config_, slam_config_, classes_, keep_reading_);
   if (slam->map().submaps().empty()) throw InputError(path + ": has no finished submap");
   return {slam, &slam->parts()};
 }

@@ -57,9 +57,9 @@ bool parse(int argc, char** argv, Arguments& arguments) {
   return true;
 }
 
-std::vector<MemberResult> membersOf(const JoinedMap& joined) {
+std::vector<MemberResult> membersOf(const JoinedMap& joined, const std::vector<StampedPose>& trajectory) {
   std::vector<MemberResult> members;
-  std::vector<std::vector<StampedPose>> trajectories = trajectoriesOf(joined);
+  std::vector<std::vector<StampedPose>> trajectories = cutByMember(joined, trajectory);
   for (std::size_t m = 0; m < joined.members.size(); ++m) {
     members.push_back({joined.members[m].map->name(), std::move(trajectories[m])});
   }
@@ -92,7 +92,7 @@ int run(int argc, char** argv) {
   writeMapFile(arguments.output,
                {stateOf(settings.slam, joined.parts), landmarks, trajectory, joined.parts.map.submaps().size()},
                inputs.config, inputs.classes);
-  const std::vector<MemberResult> members = membersOf(joined);
+  const std::vector<MemberResult> members = membersOf(joined, trajectory);
   for (const MemberResult& member : members) {
     if (member.trajectory.empty()) continue;
     writeFileAtomically((folder / fileNameFor(member)).string(), formatTumTrajectory(member.trajectory));

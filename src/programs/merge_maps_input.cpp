@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/finished_map.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/merging/landmark_map.h"
@@ -99,14 +99,6 @@ SlamParts makeLandmarkMap(const std::string& file, const std::vector<LandmarkLin
   }
 }
 
-std::unique_ptr<Slam> readEstimator(const std::string& file, const MapInputs& inputs) {
-  LoadedMap map = readMapFile(file, inputs.config, inputs.classes, [] { return true; });
-  auto slam = std::make_unique<Slam>(inputs.slam_config, inputs.classes, std::move(map.state));
-  const bool is_open = !slam->parts().waiting.empty() || (slam->parts().mapper && slam->parts().mapper->isOpen());
-  if (is_open) slam->finish();
-  return slam;
-}
-
 }  // namespace
 
 MapInputs readMaps(const std::vector<std::string>& files, const std::string& config_file,
@@ -135,7 +127,8 @@ MapInputs readMaps(const std::vector<std::string>& files, const std::string& con
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (isMapFile(files[i])) {
-      inputs.estimators.push_back(readEstimator(files[i], inputs));
+      inputs.estimators.push_back(
+          readFinishedMap(files[i], inputs.config, inputs.slam_config, inputs.classes, [] { return true; }));
       inputs.maps.emplace_back(names[i], *inputs.estimators.back());
     } else {
       inputs.landmark_maps.push_back(std::make_unique<SlamParts>(makeLandmarkMap(files[i], bare[i], inputs)));

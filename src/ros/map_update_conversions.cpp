@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/common/digest.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/ros_time.h"
 #include "semantic_mht_slam/common/state_archive.h"
@@ -211,14 +211,11 @@ void readKeyframes(const MapUpdate& message, MapDelta& delta) {
 }  // namespace
 
 std::uint64_t digestOf(const ClassTable& classes) {
-  std::uint64_t value = 0xCBF29CE484222325ULL;
-  const auto take = [&value](const std::string& text) {
-    for (const char c : text) value = (value ^ static_cast<std::uint8_t>(c)) * 0x100000001B3ULL;
-  };
+  std::string text;
   for (const ClassInfo& info : classes.all()) {
-    take(std::to_string(info.id) + "|" + info.name + (info.is_static ? "|static\n" : "|movable\n"));
+    text += std::to_string(info.id) + "|" + info.name + (info.is_static ? "|static\n" : "|movable\n");
   }
-  return value;
+  return digestOf(text);
 }
 
 MapUpdate toMessage(const SlamParts& parts, SubmapId submap, const ClassTable& classes) {

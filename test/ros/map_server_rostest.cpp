@@ -73,6 +73,19 @@ const Drives& drives() {
   return drives;
 }
 
+/// A server that begins with the files a.bag and b.bag of the two drives that belong together.
+struct TwoMaps {
+  explicit TwoMaps(const std::string& name) {
+    drives().first.write(folder / "a.bag");
+    drives().second.write(folder / "b.bag");
+    const std::vector<std::string> parameters{"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"};
+    server = std::make_unique<RunningServer>(name, parameters);
+  }
+
+  TemporaryFolder folder;
+  std::unique_ptr<RunningServer> server;
+};
+
 TEST(MapServerTest, MapsOfAFolderBecomeOneAsTheyCome) {
   const TemporaryFolder folder;
   drives().first.write(folder / "first.bag");
@@ -107,10 +120,9 @@ TEST(MapServerTest, MapsOfAFolderBecomeOneAsTheyCome) {
 }
 
 TEST(MapServerTest, RemovedAndForgottenMapsLeaveTheWorld) {
-  const TemporaryFolder folder;
-  drives().first.write(folder / "a.bag");
-  drives().second.write(folder / "b.bag");
-  RunningServer server("services", {"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"});
+  const TwoMaps maps("services");
+  const TemporaryFolder& folder = maps.folder;
+  RunningServer& server = *maps.server;
   ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
   const std::size_t of_both = server.status().landmarks;
 
@@ -134,10 +146,9 @@ TEST(MapServerTest, RemovedAndForgottenMapsLeaveTheWorld) {
 }
 
 TEST(MapServerTest, SavedWorldIsAMapFile) {
-  const TemporaryFolder folder;
-  drives().first.write(folder / "a.bag");
-  drives().second.write(folder / "b.bag");
-  RunningServer server("saving", {"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"});
+  const TwoMaps maps("saving");
+  const TemporaryFolder& folder = maps.folder;
+  RunningServer& server = *maps.server;
   ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
   SaveMap::Request request;
   request.path = folder / "all.bag";
@@ -194,10 +205,9 @@ TEST(MapServerTest, OneFileIsOneMap) {
 }
 
 TEST(MapServerTest, ASavedWorldIsThatOfTheCallsBefore) {
-  const TemporaryFolder folder;
-  drives().first.write(folder / "a.bag");
-  drives().second.write(folder / "b.bag");
-  RunningServer server("at_once", {"_server/maps:=" + folder / "a.bag" + ":" + folder / "b.bag"});
+  const TwoMaps maps("at_once");
+  const TemporaryFolder& folder = maps.folder;
+  RunningServer& server = *maps.server;
   ASSERT_TRUE(server.comesTo({{"a", kJoined}, {"b", kJoined}}));
   SaveMap::Request request;
   request.path = folder / "all.bag";

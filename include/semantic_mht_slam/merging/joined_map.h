@@ -38,7 +38,7 @@ JoinedMap joinMaps(std::vector<JoinedMember> members, std::vector<CrossClosure> 
 /// Landmarks of a joined map, each once, in its frame.
 std::vector<MixtureLandmark> landmarksOf(const JoinedMap& joined);
 
-/// Where each member went by all of its odometry, in the joined frame; empty for one without odometry.
-std::vector<std::vector<StampedPose>> trajectoriesOf(const JoinedMap& joined);
+/// The joined trajectory cut into those of the members, each by all of its odometry; empty for one without odometry.
+std::vector<std::vector<StampedPose>> cutByMember(const JoinedMap& joined, const std::vector<StampedPose>& trajectory);
 
 }  // namespace semantic_mht_slam

@@ -48,6 +48,13 @@ def is_complete(output: Path, drive: Drive, list_folder: Path) -> bool:
     return True
 
 
+def last_line(log: Path) -> str:
+    """What a program said at last."""
+    lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
+    said = [line.strip() for line in lines if line.strip()]
+    return said[-1] if said else "said nothing"
+
+
 def reason_of_failure(output: Path, drive: Drive) -> str:
     """The last line that a drive said which failed; why there is none otherwise."""
     if is_locked(output, drive.name):
@@ -55,9 +62,7 @@ def reason_of_failure(output: Path, drive: Drive) -> str:
     log = failed_folder(output, drive) / LOG
     if not log.exists():
         return "has not been run"
-    lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
-    said = [line.strip() for line in lines if line.strip()]
-    return said[-1] if said else "said nothing"
+    return last_line(log)
 
 
 def lock_file(output: Path, name: str) -> Path:
@@ -148,9 +153,7 @@ def run_drive(program: str, drive: Drive, list_folder: Path, output: Path) -> st
                 log.write(f"it wrote no {MAP}\n")
         if code != 0:
             failed = keep_failure(unfinished, output, drive)
-            with open(failed / LOG, encoding="utf-8", errors="replace") as log:
-                said = [line.strip() for line in log if line.strip()] or ["it said nothing"]
-            raise FleetError(f"{drive.name}: failed: {said[-1]} (all it said: {failed / LOG})")
+            raise FleetError(f"{drive.name}: failed: {last_line(failed / LOG)} (all it said: {failed / LOG})")
         write_surely(unfinished / ARGUMENTS, json.dumps(made_of(drive, list_folder)) + "\n")
         os.rename(unfinished, result_folder(output, drive))
         shutil.rmtree(failed_folder(output, drive), ignore_errors=True)

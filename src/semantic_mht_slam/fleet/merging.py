@@ -7,7 +7,8 @@ import shutil
 from pathlib import Path
 
 from .drive_list import Drive
-from .drive_run import LOG, MAP, is_complete, new_folder, reason_of_failure, result_folder, run_program, sole_run, write_surely
+from .drive_run import (LOG, MAP, is_complete, last_line, new_folder, reason_of_failure, result_folder, run_program, sole_run,
+                        write_surely)
 from .errors import FleetError
 
 SUMMARY = "drives.json"
@@ -47,7 +48,7 @@ def merge_drives(program: str, drives: list[Drive], list_folder: Path, output: P
         unfinished = new_folder(output, MERGED)
         command = [program, *map(str, maps), *merge_arguments(complete), "--output", str(unfinished / "all.bag")]
         code = run_program(command, list_folder, unfinished / LOG, lock)
-        said = (unfinished / LOG).read_text(encoding="utf-8", errors="replace").strip().split("\n")[-1]
+        said = last_line(unfinished / LOG)
         if code != 0:
             shutil.rmtree(unfinished)
             raise FleetError(f"{text}merge_maps failed: {said}")

@@ -1,0 +1,19 @@
+#include "semantic_mht_slam/bags/finished_map.h"
+
+#include <utility>
+
+#include "semantic_mht_slam/bags/map_file.h"
+
+namespace semantic_mht_slam {
+
+std::unique_ptr<Slam> readFinishedMap(const std::string& path, const SystemConfig& config,
+                                      const SlamConfig& slam_config, const ClassTable& classes,
+                                      const KeepReading& keep_reading) {
+  LoadedMap map = readMapFile(path, config, classes, keep_reading);
+  auto slam = std::make_unique<Slam>(slam_config, classes, std::move(map.state), keep_reading);
+  const SlamParts& parts = slam->parts();
+  if (!parts.waiting.empty() || (parts.mapper && parts.mapper->isOpen())) slam->finish();
+  return slam;
+}
+
+}  // namespace semantic_mht_slam
