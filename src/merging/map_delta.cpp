@@ -12,28 +12,92 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr double kSameStep_m = 1e-3;
+/// A landmark as one keyframe saw it, base frame of the keyframe.
+struct SeenAt {
+  std::size_t keyframe = 0;
+  Gaussian3 position;
+};
 
-DeltaSighting sightingOf(const SceneObject& object, const PoseNode& node, std::size_t landmark) {
-  DeltaSighting result{landmark, {object.position_m, object.cov_m2}};
-  for (const LandmarkSighting& seen : node.sightings) {
-    if (static_cast<LandmarkId>(seen.landmark) != object.landmark) continue;
-    result.position = {seen.position_m, seen.cov_m2};
-    break;
+/// What the keyframes of a submap saw of each of its landmarks: as the pose graph has it where it has it, else as in
+/// their scenes.
+std::map<LandmarkId, std::vector<SeenAt>> seenIn(const SlamParts& parts, SubmapId submap) {
+  std::map<LandmarkId, std::vector<SeenAt>> in_graph;
+  std::map<LandmarkId, std::vector<SeenAt>> seen;
+  std::size_t place = 0;
+  for (const KeyframeId k : parts.map.keyframesOf(submap)) {
+    for (const SceneObject& object : parts.map.keyframes()[k].scene.objects) {
+      std::vector<SeenAt>& one = seen[object.landmark];  // a scene shows one place of the submap, however often
+      const SeenAt at{place, {object.position_m, object.cov_m2}};
+      if (one.empty() || at.position.mean_m.norm() < one.front().position.mean_m.norm()) one = {at};
+    }
+    for (const LandmarkSighting& sighting : parts.graph.node(k).sightings) {
+      in_graph[static_cast<LandmarkId>(sighting.landmark)].push_back({place, {sighting.position_m, sighting.cov_m2}});
+    }
+    ++place;
   }
-  return result;
+  for (auto& [id, sightings] : seen) {
+    const auto better = in_graph.find(id);
+    if (better != in_graph.end()) sightings = std::move(better->second);
+  }
+  return seen;
 }
 
-/// Correction of the odometry with which a keyframe begins, if the odometry before does not lead to it.
-std::optional<Pose> begunAt(const SlamParts& parts, KeyframeId first, const OdometryModel& odometry) {
-  if (first == KeyframeId(0)) return std::nullopt;
-  const Keyframe& keyframe = parts.map.keyframes()[first];
-  const Pose& T_odom_before = parts.map.keyframes()[KeyframeId(first.index() - 1)].T_odom_base;
-  const Pose by_odometry = expectedStep(odometry, T_odom_before.inverse() * keyframe.T_odom_base);
-  const Pose step = parts.graph.node(first).T_previous_node;
-  const double way_m = (step.translation_m - by_odometry.translation_m).norm();
-  if (way_m < kSameStep_m + 0.1 * by_odometry.translation_m.norm()) return std::nullopt;
-  return parts.map.T_map_keyframe(first) * keyframe.T_odom_base.inverse();
+/// A step of an odometry that is expected to have been `expected`.
+Pose stepFor(const OdometryModel& odometry, const Pose& expected) {
+  constexpr int kRounds = 4;  // each takes two digits or more: systematic errors are per cents
+  Pose step = expected;
+  for (int round = 0; round < kRounds; ++round) {
+    step = step * (expectedStep(odometry, step).inverse() * expected);
+  }
+  return step;
+}
+
+/// The odometry between the keyframes of a submap, smoothed by what they saw: of the submap alone, whatever was closed
+/// around it, so that it can be laid into another graph.
+std::vector<Pose> smoothedSteps(const std::vector<PoseNode>& nodes, const OdometryModel& odometry) {
+  PoseGraph graph;
+  for (const PoseNode& node : nodes) graph.addNode(node);
+  const bool is_solved = graph.optimizeFully().failure.empty();
+  std::vector<Pose> steps;
+  for (int i = 1; i < graph.nodes(); ++i) {
+    const Pose expected = is_solved ? graph.pose(i - 1).inverse() * graph.pose(i) : nodes[i].T_previous_node;
+    steps.push_back(stepFor(odometry, expected));
+  }
+  return steps;
+}
+
+/// Of the later one of two keyframes in the frame of the earlier one, or the other way round.
+Pose between(std::size_t to, std::size_t from, const std::vector<DeltaKeyframe>& keyframes) {
+  if (to > from) return between(from, to, keyframes).inverse();
+  Pose T_to_from;
+  for (std::size_t k = to + 1; k <= from; ++k) T_to_from = T_to_from * keyframes[k].T_previous_keyframe;
+  return T_to_from;
+}
+
+/// All that was seen of a landmark, in the frame of the keyframe that saw it best.
+SeenAt fused(const std::vector<SeenAt>& seen, const std::vector<DeltaKeyframe>& keyframes) {
+  const SeenAt& best = *std::min_element(seen.begin(), seen.end(), [](const SeenAt& a, const SeenAt& b) {
+    return a.position.cov_m2.trace() < b.position.cov_m2.trace();
+  });
+  const std::size_t keyframe = std::min(best.keyframe, kNamedKeyframes - 1);
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+  for (const SeenAt& one : seen) {
+    const Pose T_keyframe_one = between(keyframe, one.keyframe, keyframes);
+    const Eigen::Matrix3d R = T_keyframe_one.rotation.toRotationMatrix();
+    const Eigen::Matrix3d of_one = R * inverted(one.position.cov_m2) * R.transpose();
+    information += of_one;
+    weighted += of_one * (T_keyframe_one * one.position.mean_m);
+  }
+  const Eigen::Matrix3d cov_m2 = symmetric(inverted(information));
+  return {keyframe, {cov_m2 * weighted, cov_m2}};
+}
+
+/// The step that leads to a keyframe from the one before by odometry, as it came; to the first one, its pose.
+Pose rawStep(const Map& map, KeyframeId keyframe) {
+  const Pose& T_odom_keyframe = map.keyframes()[keyframe].T_odom_base;
+  if (keyframe == KeyframeId(0)) return T_odom_keyframe;
+  return map.keyframes()[KeyframeId(keyframe.index() - 1)].T_odom_base.inverse() * T_odom_keyframe;
 }
 
 /// Lays the deltas behind each other.
@@ -49,22 +113,17 @@ class Rebuilding {
   /// `odometry`: what is known of it by now.
   void add(const MapDelta& delta, const std::vector<bool>& held, const OdometryModel& odometry) {
     if (delta.keyframes.empty()) throw InputError("a submap without a keyframe");
-    const SubmapId id = parts_.map.submaps().nextId();
-    if (delta.T_map_odom) {
+    if (delta.begins_session) {
       parts_.graph.settle(parts_.map);
-      parts_.graph.goOnAt(*delta.T_map_odom);
+      parts_.graph.goOnAt(parts_.graph.T_map_odom(parts_.map));
     }
-    Submap submap = submapOf(delta, id);
+    const SubmapId id = parts_.map.submaps().nextId();
     std::vector<Keyframe> keyframes;
-    std::vector<std::vector<Sighting>> sightings;
-    for (const DeltaKeyframe& seen : delta.keyframes) {
-      requireInOrder(seen);
-      keyframes.push_back(keyframeOf(seen, submap));
-      sightings.push_back(sightingsOf(seen, delta));
-      noteSideBySide(seen, delta, keyframes.back().frame, submap);
-    }
+    for (const DeltaKeyframe& seen : delta.keyframes) keyframes.push_back(keyframeOf(seen, id));
+    Submap submap = submapOf(delta, keyframes);
+    for (std::size_t k = 0; k < keyframes.size(); ++k) show(delta.keyframes[k].landmarks, delta, keyframes[k], submap);
     const auto ids = parts_.map.add(std::make_shared<const Submap>(std::move(submap)), std::move(keyframes));
-    parts_.graph.add(parts_.map, ids, sightings, odometry);
+    parts_.graph.add(parts_.map, ids, sightingsOf(delta), odometry);
     for (LoopClosureRecord closure : delta.closures) {
       const bool is_known =
           parts_.map.keyframes().has(closure.query_keyframe) && parts_.map.keyframes().has(closure.match_keyframe);
@@ -85,94 +144,68 @@ class Rebuilding {
   }
 
  private:
-  void requireInOrder(const DeltaKeyframe& next) {
-    if (next.driven.way_m < driven_m_) throw InputError("keyframes that are not in the order of the drive");
-    driven_m_ = next.driven.way_m;
+  Keyframe keyframeOf(const DeltaKeyframe& seen, SubmapId submap) {
+    if (seen.driven.way_m < driven_m_) throw InputError("keyframes that are not in the order of the drive");
+    driven_m_ = seen.driven.way_m;
+    T_odom_newest_ = T_odom_newest_ * seen.T_previous_keyframe;
+    return {frames_++, submap, seen.driven.way_m, {}, seen.stamp, T_odom_newest_, seen.driven.turn_rad};
   }
 
-  Submap submapOf(const MapDelta& delta, SubmapId id) const {
+  Submap submapOf(const MapDelta& delta, const std::vector<Keyframe>& keyframes) const {
     Submap submap;
-    submap.id = id;
-    submap.begin = delta.keyframes.front().stamp;
-    submap.end = std::max(delta.end, delta.keyframes.back().stamp);
-    submap.T_odom_submap = delta.keyframes.front().T_odom_base;
+    submap.id = keyframes.front().submap;
+    submap.begin = keyframes.front().stamp;
+    submap.end = std::max(delta.end, keyframes.back().stamp);
+    submap.T_odom_submap = keyframes.front().T_odom_base;
     submap.duplicates = delta.duplicates;
-    std::vector<Gaussian3> places = placesOf(delta);
     for (std::size_t i = 0; i < delta.landmarks.size(); ++i) {
       const DeltaLandmark& known = delta.landmarks[i];
       if (i > 0 && known.id <= delta.landmarks[i - 1].id) throw InputError("landmarks whose ids do not rise");
       MixtureLandmark landmark;
       landmark.id = known.id;
-      landmark.position = places[i];
-      landmark.components.push_back({1.0, places[i]});
+      landmark.position = placeOf(known, keyframes);
+      landmark.components.push_back({1.0, landmark.position});
       const int classes = classes_.size();
       const double rest = classes > 1 ? (1.0 - known.class_prob) / (classes - 1) : 0.0;
       landmark.class_probs = ClassProbs::Constant(classes, rest);
       landmark.class_probs(known.class_index) = classes > 1 ? known.class_prob : 1.0;
       landmark.existence_prob = known.existence_prob;
       landmark.observations = known.observations;
-      landmark.first_submap = landmark.last_submap = id;
+      landmark.first_submap = landmark.last_submap = submap.id;
       submap.landmarks.push_back(std::move(landmark));
     }
     return submap;
   }
 
-  /// Of each landmark in the frame of the submap, as all keyframes together say.
-  static std::vector<Gaussian3> placesOf(const MapDelta& delta) {
-    std::vector<Eigen::Matrix3d> information(delta.landmarks.size(), Eigen::Matrix3d::Zero());
-    std::vector<Eigen::Vector3d> weighted(delta.landmarks.size(), Eigen::Vector3d::Zero());
-    const Pose T_submap_odom = delta.keyframes.front().T_odom_base.inverse();
-    for (const DeltaKeyframe& keyframe : delta.keyframes) {
-      const Pose T_submap_base = T_submap_odom * keyframe.T_odom_base;
-      const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
-      for (const DeltaSighting& seen : keyframe.sightings) {
-        if (seen.landmark >= delta.landmarks.size()) throw InputError("a sighting of no landmark");
-        const Eigen::Matrix3d one = R * inverted(seen.position.cov_m2) * R.transpose();
-        information[seen.landmark] += one;
-        weighted[seen.landmark] += one * (T_submap_base * seen.position.mean_m);
-      }
-    }
-    std::vector<Gaussian3> places;
-    for (std::size_t i = 0; i < information.size(); ++i) {
-      if (information[i].isZero(0.0)) throw InputError("a landmark without a sighting");
-      const Eigen::Matrix3d cov_m2 = symmetric(inverted(information[i]));
-      places.push_back({cov_m2 * weighted[i], cov_m2});
-    }
-    return places;
+  /// In the frame of the submap.
+  static Gaussian3 placeOf(const DeltaLandmark& landmark, const std::vector<Keyframe>& keyframes) {
+    if (landmark.keyframe >= keyframes.size()) throw InputError("a landmark that no keyframe saw");
+    const Pose T_submap_base = keyframes.front().T_odom_base.inverse() * keyframes[landmark.keyframe].T_odom_base;
+    const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
+    return {T_submap_base * landmark.position.mean_m, symmetric(R * landmark.position.cov_m2 * R.transpose())};
   }
 
-  Keyframe keyframeOf(const DeltaKeyframe& seen, const Submap& submap) {
-    Keyframe keyframe;
-    keyframe.frame = frames_++;
-    keyframe.submap = submap.id;
-    keyframe.driven_m = seen.driven.way_m;
-    keyframe.turned_rad = seen.driven.turn_rad;
-    keyframe.stamp = seen.stamp;
-    keyframe.T_odom_base = seen.T_odom_base;
-    const Pose T_keyframe_submap = seen.T_odom_base.inverse() * submap.T_odom_submap;
-    for (const DeltaSighting& sighting : seen.sightings) {
-      keyframe.scene.objects.push_back(sceneObject(submap.landmarks[sighting.landmark], T_keyframe_submap, floor_m_));
-    }
-    return keyframe;
-  }
-
-  static std::vector<Sighting> sightingsOf(const DeltaKeyframe& seen, const MapDelta& delta) {
-    std::vector<Sighting> sightings;
-    for (const DeltaSighting& sighting : seen.sightings) {
-      const DeltaLandmark& landmark = delta.landmarks[sighting.landmark];
-      sightings.push_back({landmark.id, landmark.class_index, sighting.position.mean_m, sighting.position.cov_m2, 1});
+  static std::vector<std::vector<Sighting>> sightingsOf(const MapDelta& delta) {
+    std::vector<std::vector<Sighting>> sightings(delta.keyframes.size());
+    for (const DeltaLandmark& landmark : delta.landmarks) {
+      const Gaussian3& position = landmark.position;
+      sightings[landmark.keyframe].push_back({landmark.id, landmark.class_index, position.mean_m, position.cov_m2, 1});
     }
     return sightings;
   }
 
   /// What a keyframe shows is not one object, but for names that are known to be one.
-  static void noteSideBySide(const DeltaKeyframe& seen, const MapDelta& delta, std::size_t frame, Submap& submap) {
+  void show(const std::vector<std::size_t>& landmarks, const MapDelta& delta, Keyframe& keyframe,
+            Submap& submap) const {
+    const Pose T_keyframe_submap = keyframe.T_odom_base.inverse() * submap.T_odom_submap;
     int row = 0;
-    for (const DeltaSighting& sighting : seen.sightings) {
-      const LandmarkId id = delta.landmarks[sighting.landmark].id;
+    for (const std::size_t place : landmarks) {
+      if (place >= submap.landmarks.size()) throw InputError("a keyframe that shows no landmark");
+      const MixtureLandmark& landmark = submap.landmarks[place];
+      keyframe.scene.objects.push_back(sceneObject(landmark, T_keyframe_submap, floor_m_));
       const bool is_second = std::any_of(delta.duplicates.begin(), delta.duplicates.end(),
-                                         [&](const SameLandmark& pair) { return pair.first == id; });
-      if (!is_second) submap.associations.push_back({frame, row++, id});
+                                         [&](const SameLandmark& pair) { return pair.first == landmark.id; });
+      if (!is_second) submap.associations.push_back({keyframe.frame, row++, landmark.id});
     }
   }
 
@@ -182,6 +215,7 @@ class Rebuilding {
   std::size_t frames_ = 0;
   std::size_t next_closure_ = 0;
   double driven_m_ = 0.0;
+  Pose T_odom_newest_;
 };
 
 }  // namespace
@@ -193,30 +227,30 @@ MapDelta deltaOf(const SlamParts& parts, SubmapId submap) {
   delta.odometry = parts.odometry;
   if (parts.mapper) delta.odometry.systematic.scale_translation.stddev = parts.mapper->scaleStddev();
   delta.duplicates = finished.duplicates;
-  std::map<LandmarkId, std::size_t> place;
+  const std::map<LandmarkId, std::vector<SeenAt>> seen = seenIn(parts, submap);
+  std::vector<PoseNode> nodes;
   for (const KeyframeId k : parts.map.keyframesOf(submap)) {
-    for (const SceneObject& object : parts.map.keyframes()[k].scene.objects) place[object.landmark] = 0;
+    const Keyframe& keyframe = parts.map.keyframes()[k];
+    nodes.push_back(parts.graph.node(k));
+    delta.keyframes.push_back({keyframe.stamp, motionTo(keyframe), {}, {}});
+    for (const SceneObject& object : keyframe.scene.objects) {
+      delta.keyframes.back().landmarks.push_back(std::distance(seen.begin(), seen.find(object.landmark)));
+    }
   }
-  for (auto& [id, index] : place) {
-    index = delta.landmarks.size();
+  const KeyframeId first = parts.map.keyframesOf(submap).front();
+  delta.begins_session = parts.graph.beginsSession(first);
+  delta.keyframes[0].T_previous_keyframe =
+      delta.begins_session ? nodes.front().T_previous_node : rawStep(parts.map, first);
+  const std::vector<Pose> steps = smoothedSteps(nodes, delta.odometry);
+  for (std::size_t i = 0; i < steps.size(); ++i) delta.keyframes[i + 1].T_previous_keyframe = steps[i];
+  for (const auto& [id, sightings] : seen) {
     const MixtureLandmark* landmark = findLandmark(id, finished.landmarks);
     if (landmark == nullptr) throw std::logic_error("deltaOf: a scene shows a landmark that its submap lacks");
     const ClassIndex class_index = landmark->mostLikelyClass();
-    delta.landmarks.push_back(
-        {id, class_index, landmark->class_probs(class_index), landmark->existence_prob, landmark->observations});
+    const SeenAt best = fused(sightings, delta.keyframes);
+    delta.landmarks.push_back({id, class_index, landmark->class_probs(class_index), landmark->existence_prob,
+                               landmark->observations, best.keyframe, best.position});
   }
-  for (const KeyframeId k : parts.map.keyframesOf(submap)) {
-    const Keyframe& keyframe = parts.map.keyframes()[k];
-    const PoseNode node = parts.graph.node(k);
-    DeltaKeyframe& seen = delta.keyframes.emplace_back();
-    seen.stamp = keyframe.stamp;
-    seen.driven = motionTo(keyframe);
-    seen.T_odom_base = keyframe.T_odom_base;
-    for (const SceneObject& object : keyframe.scene.objects) {
-      seen.sightings.push_back(sightingOf(object, node, place.at(object.landmark)));
-    }
-  }
-  delta.T_map_odom = begunAt(parts, parts.map.keyframesOf(submap).front(), parts.odometry);
   for (const LoopClosureRecord& closure : parts.map.closures()) {
     if (closure.is_verified && closure.came_after == submap) delta.closures.push_back(closure);
   }

@@ -6,7 +6,7 @@
 #include <semantic_mht_slam/GetMapUpdates.h>
 
 #include "semantic_mht_slam/common/error.h"
-#include "semantic_mht_slam/ros/map_update_conversions.h"
+#include "semantic_mht_slam/bags/map_update_conversions.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 namespace semantic_mht_slam {
@@ -40,7 +40,7 @@ RobotFeed::RobotFeed(ros::NodeHandle handle, const std::string& robot, SlamConfi
             on_news_();
           }))) {}
 
-void RobotFeed::requireMap(const std::string& map_id) {
+void RobotFeed::requireMap(std::uint64_t map_id) {
   if (map_id == map_id_) return;
   begins_anew_ = begins_anew_ || !map_.deltas.empty();
   map_id_ = map_id;

@@ -32,7 +32,7 @@ class RobotFeed {
 
  private:
   void take(const MapUpdate& update);
-  void requireMap(const std::string& map_id);
+  void requireMap(std::uint64_t map_id);
 
   const std::string name_;
   const std::string topic_;
@@ -41,7 +41,7 @@ class RobotFeed {
   const ClassTable classes_;
   const std::function<void()> on_news_;
   std::mutex mutex_;  ///< guards all below
-  std::string map_id_;
+  std::uint64_t map_id_ = 0;
   std::string frame_;
   MapByDeltas map_;
   bool has_changed_ = false;

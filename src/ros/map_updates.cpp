@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "semantic_mht_slam/ros/map_update_conversions.h"
+#include "semantic_mht_slam/bags/map_update_conversions.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -12,16 +12,11 @@ namespace {
 constexpr std::uint32_t kUpdateQueue = 1000;
 constexpr std::size_t kMostAtOnce = 200;  // submaps in a message: a megabyte, about
 
-/// Different from that of any other map.
-std::string newMapId() {
+/// Different from that of any other map, and from that of a map in a file.
+std::uint64_t newMapId() {
   std::random_device source;
-  std::string id;
-  for (int i = 0; i < 4; ++i) {
-    constexpr char kDigits[] = "0123456789abcdef";
-    std::uint32_t bits = source();
-    for (int digit = 0; digit < 8; ++digit, bits >>= 4U) id += kDigits[bits & 15U];
-  }
-  return id;
+  const std::uint64_t high = source();
+  return (high << 32U | source()) | 1U;
 }
 
 }  // namespace

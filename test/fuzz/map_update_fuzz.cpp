@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/map_update_conversions.h"
 #include "semantic_mht_slam/merging/map_delta.h"
-#include "semantic_mht_slam/ros/map_update_conversions.h"
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
@@ -50,14 +50,17 @@ class ChangedUpdates {
         update.range_factor = real();
         break;
       case 1:
-        update.resolution = real();
+        update.landmark_step = real();
+        update.keyframe_step = real();
         break;
       case 2:
-        oneOf(update.odometry_model) = values_.byte();
+        update.odometry_noise[values_.byte() % 6] = real();
+        update.odometry_errors[values_.byte() % 10] = real();
         break;
       case 3:
-        update.begins_session = true;
-        update.map_odom = toMessage(values_.pose());
+        update.begins_session = 1;
+        update.first_position[values_.byte() % 3] = values_.number();
+        update.first_rotation[values_.byte() % 3] = real();
         break;
       case 4:
         update.begin.sec = values_.byte() << 24U;
@@ -67,7 +70,7 @@ class ChangedUpdates {
         update.turned = values_.number();
         break;
       case 6:
-        update.odom_base = toMessage(values_.pose());
+        oneOf(update.shown) = values_.byte();
         break;
       case 7:
         oneOf(update.landmarks).id = values_.byte();
@@ -82,13 +85,13 @@ class ChangedUpdates {
         oneOf(update.keyframes).after = real();
         break;
       case 11:
-        oneOf(update.keyframes).position[values_.byte() % 3] = real();
+        oneOf(update.keyframes).position[values_.byte() % 3] = static_cast<std::int16_t>(256 * values_.byte());
         break;
       case 12:
-        oneOf(update.keyframes).rotation[values_.byte() % 3] = real();
+        oneOf(update.pairs) = values_.byte();
         break;
       case 13:
-        changeSighting(oneOf(update.sightings));
+        changeLandmark(oneOf(update.landmarks));
         break;
       case 14:
         changeClosure(oneOf(update.closures));
@@ -99,10 +102,10 @@ class ChangedUpdates {
     }
   }
 
-  void changeSighting(MapUpdateSighting& sighting) {
-    sighting.landmark = values_.byte();
-    sighting.position[values_.byte() % 3] = static_cast<std::int16_t>(256 * values_.byte());
-    sighting.stddev[values_.byte() % 3] = values_.byte();
+  void changeLandmark(MapUpdateLandmark& landmark) {
+    landmark.keyframe = values_.byte();
+    landmark.position[values_.byte() % 3] = static_cast<std::int16_t>(256 * values_.byte());
+    landmark.stddev[values_.byte() % 3] = values_.byte();
   }
 
   void changeClosure(MapUpdateClosure& closure) {
@@ -110,7 +113,8 @@ class ChangedUpdates {
     closure.query_keyframe = values_.byte();
     closure.match_keyframe = values_.byte();
     closure.position[values_.byte() % 3] = real();
-    closure.covariance[values_.byte() % 21] = real();
+    closure.stddev[values_.byte() % 6] = real();
+    closure.correlation[values_.byte() % 15] = static_cast<std::int8_t>(values_.byte());
     oneOf(closure.pairs) = values_.byte();
   }
 

@@ -94,9 +94,9 @@ TEST_F(MapDeltaTest, DeltasThatContradictThemselvesAreRefused) {
   };
   expectRefused([](MapByDeltas& map) { map.deltas.clear(); });
   expectRefused([](MapByDeltas& map) { map.deltas[0].keyframes.clear(); });
-  expectRefused([](MapByDeltas& map) { map.deltas[0].keyframes[0].sightings[0].landmark = 1000000; });
+  expectRefused([](MapByDeltas& map) { map.deltas[0].keyframes[0].landmarks[0] = 1000000; });
   expectRefused([](MapByDeltas& map) { std::swap(map.deltas[0].landmarks[0], map.deltas[0].landmarks[1]); });
-  expectRefused([](MapByDeltas& map) { map.deltas[0].landmarks.push_back({1000000, 0, 1.0, 1.0, 1}); });
+  expectRefused([](MapByDeltas& map) { map.deltas[0].landmarks[0].keyframe = 1000000; });
   expectRefused([](MapByDeltas& map) {
     LoopClosureRecord closure;
     closure.query_keyframe = KeyframeId(100000);

@@ -7,6 +7,9 @@
 
 namespace semantic_mht_slam {
 
+/// Keyframes of a submap that a landmark can name, by a byte; the first ones.
+constexpr std::size_t kNamedKeyframes = 256;
+
 /// A landmark that a submap saw.
 struct DeltaLandmark {
   LandmarkId id = kNoLandmark;
@@ -14,26 +17,24 @@ struct DeltaLandmark {
   double class_prob = 1.0;
   double existence_prob = 1.0;
   int observations = 0;
-};
-
-/// A landmark as a keyframe saw it, base frame of the keyframe.
-struct DeltaSighting {
-  std::size_t landmark = 0;  ///< its place in the list of the submap's landmarks
-  Gaussian3 position;
+  std::size_t keyframe = 0;  ///< its place in the list of the submap's keyframes: that saw it best
+  Gaussian3 position;        ///< as all keyframes of the submap together saw it, base frame of that keyframe
 };
 
 struct DeltaKeyframe {
   Stamp stamp = 0;
   Motion driven;  ///< since the beginning of the drive
-  Pose T_odom_base;
-  std::vector<DeltaSighting> sightings;  ///< by rising landmark
+  /// By odometry; within a submap smoothed by what its keyframes saw, as an odometry with the same systematic errors
+  /// would have it. Of the first keyframe of all, its pose in the map.
+  Pose T_previous_keyframe;
+  std::vector<std::size_t> landmarks;  ///< what it shows, as places in the list of the submap's landmarks; rising
 };
 
 /// What a finished submap added to a map: enough to merge the map with others, not to go on in it.
 struct MapDelta {
   Stamp end = 0;
   OdometryModel odometry;
-  std::optional<Pose> T_map_odom;  ///< if its odometry does not go on from the submap before
+  bool begins_session = false;  ///< the first step is no odometry, but a pose that was found in the map
   std::vector<DeltaLandmark> landmarks;
   std::vector<SameLandmark> duplicates;
   std::vector<DeltaKeyframe> keyframes;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include <ros/ros.h>
@@ -33,7 +34,7 @@ class MapUpdates {
   const std::string map_frame_;
   const ClassTable classes_;
   ros::Publisher publisher_;
-  std::string map_id_;
+  std::uint64_t map_id_;
   std::size_t published_ = 0;
 };
 

@@ -36,6 +36,9 @@ class MapGraph {
   /// The next keyframe follows the ones before by a pose in the map, known within about a metre, not by odometry.
   void goOnAt(const Pose& T_map_odom) { T_map_odom_start_ = T_map_odom; }
 
+  /// Whether a keyframe follows the one before as `goOnAt` says.
+  bool beginsSession(KeyframeId keyframe) const;
+
   /// Takes the closures of the map that are verified and new, and decides which of them agree with the odometry and
   /// with each other.
   [[nodiscard]] GraphUpdate review(const Map& map);
