@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/readable_map.h"
 
 namespace semantic_mht_slam {
 
@@ -10,7 +11,7 @@ std::unique_ptr<Slam> readFinishedMap(const std::string& path, const SystemConfi
                                       const SlamConfig& slam_config, const ClassTable& classes,
                                       const KeepReading& keep_reading) {
   LoadedMap map = readMapFile(path, config, classes, keep_reading);
-  auto slam = std::make_unique<Slam>(slam_config, classes, std::move(map.state), keep_reading);
+  auto slam = std::make_unique<Slam>(slam_config, classes, stateOf(std::move(map), slam_config, classes), keep_reading);
   const SlamParts& parts = slam->parts();
   if (!parts.waiting.empty() || (parts.mapper && parts.mapper->isOpen())) slam->finish();
   return slam;

@@ -1,6 +1,7 @@
 #include "semantic_mht_slam/bags/map_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string_view>
 
@@ -13,6 +14,8 @@
 #include "semantic_mht_slam/bags/bag_limits.h"
 #include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/bags/guarded_bag.h"
+#include "semantic_mht_slam/bags/map_update_conversions.h"
+#include "semantic_mht_slam/bags/readable_map.h"
 #include "semantic_mht_slam/common/digest.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/existing_path.h"
@@ -52,38 +55,46 @@ MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const Syst
 constexpr std::size_t kPiece = std::size_t{1} << 20U;
 constexpr std::size_t kBesidePiece = 1U << 10U;  // name, version, digest
 
-/// Half of the bits of a number are noise to whoever reads a map, and most of what it takes in a file.
-void toSinglePrecision(double& value) {
-  value = static_cast<float>(value);
+/// What follows is for people and other programs, to whom most digits are noise, and most of what a number takes.
+void shorten(geometry_msgs::Point& point) {
+  constexpr double kStep_m = 1.0 / 1024.0;
+  for (double* value : {&point.x, &point.y, &point.z}) *value = kStep_m * std::round(*value / kStep_m);
 }
 
-void toSinglePrecision(geometry_msgs::Point& point) {
-  toSinglePrecision(point.x);
-  toSinglePrecision(point.y);
-  toSinglePrecision(point.z);
+void shorten(geometry_msgs::Quaternion& q) {
+  constexpr double kStep = 1.0 / (1 << 20);
+  for (double* value : {&q.x, &q.y, &q.z, &q.w}) *value = kStep * std::round(*value / kStep);
 }
 
-nav_msgs::Path inSinglePrecision(nav_msgs::Path path) {
+/// To four digits.
+void shorten(double& value) {
+  constexpr int kBits = 13;
+  int exponent = 0;
+  const double fraction = std::frexp(value, &exponent);
+  value = std::ldexp(std::round(std::ldexp(fraction, kBits)), exponent - kBits);
+}
+
+nav_msgs::Path shortened(nav_msgs::Path path) {
   for (geometry_msgs::PoseStamped& stamped : path.poses) {
-    geometry_msgs::Quaternion& q = stamped.pose.orientation;
-    toSinglePrecision(stamped.pose.position);
-    for (double* value : {&q.x, &q.y, &q.z, &q.w}) toSinglePrecision(*value);
+    shorten(stamped.pose.position);
+    shorten(stamped.pose.orientation);
   }
   return path;
 }
 
-SemanticMap inSinglePrecision(SemanticMap map) {
+SemanticMap shortened(SemanticMap map) {
   for (Landmark& landmark : map.landmarks) {
-    for (double& value : landmark.class_probs) toSinglePrecision(value);
-    for (double& value : landmark.covariance) toSinglePrecision(value);
+    shorten(landmark.position);
+    for (double& value : landmark.class_probs) shorten(value);
+    for (double& value : landmark.covariance) shorten(value);
     for (double* value :
          {&landmark.existence_prob, &landmark.seen_standing, &landmark.size.x, &landmark.size.y, &landmark.size.z}) {
-      toSinglePrecision(*value);
+      shorten(*value);
     }
     for (GaussianComponent& component : landmark.components) {
-      toSinglePrecision(component.weight);
-      toSinglePrecision(component.mean);
-      for (double& value : component.covariance) toSinglePrecision(value);
+      shorten(component.weight);
+      shorten(component.mean);
+      for (double& value : component.covariance) shorten(value);
     }
   }
   return map;
@@ -199,7 +210,21 @@ class MapReader {
                           [&](const StateSection& section) { return section.name == name; }),
               "damaged: section '" + name + "' is missing");
     }
+    readFinished(bag, map);
     return map;
+  }
+
+  /// If the state is of no use.
+  void readFinished(const rosbag::Bag& bag, LoadedMap& map) const {
+    const std::string problem = whyUnreadable(map.state);
+    if (problem.empty() || rosbag::View(bag, rosbag::TopicQuery(std::vector<std::string>{kUpdateTopic})).size() == 0)
+      return;
+    map.remade = "made by another version of this program (" + problem + ")";
+    try {
+      map.finished = readUpdates(bag, classes_, mostMemory(size_), keep_reading_);
+    } catch (const InputError& error) {
+      fail(map.remade + ": " + error.what());
+    }
   }
 
   const std::string& path_;
@@ -255,8 +280,11 @@ std::size_t writeMapFile(const std::string& path, const SavedMap& map, const Sys
     for (const StateSection& section : map.state.sections) {
       for (const MapSection& piece : toMessages(section)) bag.write(kSectionTopic, time, piece);
     }
-    bag.write(kMapTopic, time, inSinglePrecision(message));
-    bag.write(kTrajectoryTopic, time, inSinglePrecision(toPath(map.trajectory, config.node.map_frame)));
+    for (const MapUpdate& update : toMessages(map.state.content, classes, config.node.map_frame)) {
+      bag.write(kUpdateTopic, time, update);
+    }
+    bag.write(kMapTopic, time, shortened(message));
+    bag.write(kTrajectoryTopic, time, shortened(toPath(map.trajectory, config.node.map_frame)));
   });
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 #include "semantic_mht_slam/bags/map_update_conversions.h"
@@ -12,7 +13,8 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kFarthest_m = 1e7;
-constexpr float kLargestStddev = 1e3F;  // of any coefficient of an odometry
+constexpr std::size_t kMostShown = std::size_t{1} << 20U;  // objects of all keyframes of a submap
+constexpr float kLargestStddev = 1e3F;                     // of any coefficient of an odometry
 
 [[noreturn]] void refuse(const char* field, const std::string& problem) {
   throw InputError(std::string("map_update: field '") + field + "': " + problem);
@@ -112,6 +114,7 @@ void readShown(const MapUpdate& message, MapDelta& delta) {
   if (message.shown.size() != (delta.keyframes.size() * landmarks + 7) / 8) {
     refuse("shown", "not a bit for each keyframe and landmark");
   }
+  if (shownObjects(message) > kMostShown) refuse("shown", "more objects than a submap can show");
   std::vector<bool> is_shown(landmarks, false);
   for (std::size_t k = 0; k < delta.keyframes.size(); ++k) {
     for (std::size_t i = 0; i < landmarks; ++i) {
@@ -167,6 +170,12 @@ LoopClosureRecord readClosure(const MapUpdateClosure& message, const std::vector
 }
 
 }  // namespace
+
+std::size_t shownObjects(const MapUpdate& message) {
+  std::size_t count = 0;
+  for (const std::uint8_t byte : message.shown) count += std::bitset<8>(byte).count();
+  return count;
+}
 
 MapDelta fromMessage(const MapUpdate& message, const ClassTable& classes) {
   if (message.classes_digest != digestOf(classes)) refuse("classes_digest", "that robot has another class table");

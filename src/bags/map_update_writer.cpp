@@ -134,6 +134,22 @@ void writeClosures(const MapDelta& delta, MapUpdate& message) {
   }
 }
 
+/// But for the lists that grow with the map.
+MapUpdate toMessage(const SubmapContent& content, double range_factor, const ClassTable& classes) {
+  const MapDelta delta = deltaOf(content);
+  MapUpdate message;
+  message.header.stamp = toRosTime(delta.end);
+  message.number = static_cast<std::uint32_t>(content.submap->id.index());
+  message.classes_digest = digestOf(classes);
+  message.range_factor = static_cast<float>(range_factor);
+  message.landmark_step = static_cast<float>(kLandmarkStep_m * range_factor);
+  writeOdometry(delta.odometry, message);
+  writeKeyframes(delta, message);
+  writeLandmarks(delta, message);
+  writeClosures(delta, message);
+  return message;
+}
+
 }  // namespace
 
 std::uint64_t digestOf(const ClassTable& classes) {
@@ -145,19 +161,19 @@ std::uint64_t digestOf(const ClassTable& classes) {
 }
 
 MapUpdate toMessage(const SlamParts& parts, SubmapId submap, const ClassTable& classes) {
-  const MapDelta delta = deltaOf(parts, submap);
-  MapUpdate message;
-  message.header.stamp = toRosTime(delta.end);
-  message.number = static_cast<std::uint32_t>(submap.index());
-  message.classes_digest = digestOf(classes);
-  message.range_factor = static_cast<float>(parts.range_factor);
-  message.landmark_step = static_cast<float>(kLandmarkStep_m * parts.range_factor);
-  writeOdometry(delta.odometry, message);
-  writeKeyframes(delta, message);
-  writeLandmarks(delta, message);
-  writeClosures(delta, message);
+  MapUpdate message = toMessage(contentOf(parts, submap), parts.range_factor, classes);
   message.closures_held = packed(heldClosures(parts.map));
   return message;
+}
+
+std::vector<MapUpdate> toMessages(const MapContent& content, const ClassTable& classes, const std::string& map_frame) {
+  std::vector<MapUpdate> messages;
+  for (const SubmapContent& submap : content.submaps) {
+    messages.push_back(toMessage(submap, content.range_factor, classes));
+    messages.back().header.frame_id = map_frame;
+  }
+  if (!messages.empty()) messages.back().closures_held = packed(content.held);
+  return messages;
 }
 
 }  // namespace semantic_mht_slam

@@ -10,6 +10,7 @@
 
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/readable_map.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/evaluation/svg_plot.h"
 #include "semantic_mht_slam/io/text_file.h"
@@ -69,7 +70,10 @@ MapContent readContent(const Arguments& arguments) {
   MapContent content;
   content.classes = loadClassTable(config, folder);
   LoadedMap map = readMapFile(arguments.file, config, content.classes, [] { return true; });
-  content.slam = std::make_unique<Slam>(loadableSlamConfig(config, folder), content.classes, std::move(map.state));
+  if (!map.remade.empty()) std::fprintf(stderr, "%s\n", describeRemade(map).c_str());
+  const SlamConfig slam_config = loadableSlamConfig(config, folder);
+  content.slam =
+      std::make_unique<Slam>(slam_config, content.classes, stateOf(std::move(map), slam_config, content.classes));
   content.landmarks = landmarksOf(*content.slam);
   content.trajectory = trajectoryOf(*content.slam);
   return content;

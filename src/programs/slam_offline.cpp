@@ -13,6 +13,7 @@
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/bags/bag_file.h"
 #include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/readable_map.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/dataset.h"
 #include "semantic_mht_slam/io/existing_path.h"
@@ -143,14 +144,18 @@ int run(int argc, char** argv) {
     return 0;
   }
   const Recording recording = loadRecording(arguments, classes, config);
-  std::optional<LoadedMap> map;
-  if (!arguments.map.empty()) map = readMapFile(arguments.map, config, classes, [] { return true; });
+  std::optional<SlamState> map;
+  if (!arguments.map.empty()) {
+    LoadedMap loaded = readMapFile(arguments.map, config, classes, [] { return true; });
+    if (!loaded.remade.empty()) std::fprintf(stderr, "%s\n", describeRemade(loaded).c_str());
+    map = stateOf(std::move(loaded), slam_config, classes);
+  }
   StagedFolder output(arguments.output);
 
   Progress progress("frames");
   const RunResult result = runOffline(
       recording, slam_config, classes, [&](std::size_t done, std::size_t all) { progress(done, all); },
-      map ? &map->state : nullptr);
+      map ? &*map : nullptr);
   writeResultFiles(output.staging(), recording, result, config, classes);
   const std::size_t map_bytes =
       writeMapFile(output.staging() + "/map.bag",

@@ -11,6 +11,7 @@
 
 #include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/readable_map.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/landmark_choice.h"
 #include "semantic_mht_slam/ros/map_path.h"
@@ -159,13 +160,15 @@ bool SlamNode::saveMap(SaveMap::Request& request, SaveMap::Response& response) {
 bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
   return answer("load_map", response, [&] {
     std::unique_ptr<Slam> other;  // the loaded one, and then the one before
-    bool has_same_parameters = true;
+    std::string remark;
     const KeepReading keep_reading = [this] { return ros::ok() && !is_closing_; };
     try {
       const std::string path = mapPath(request.path, config_.node.map_folder);
       LoadedMap map = readMapFile(path, config_, classes_, keep_reading);
-      has_same_parameters = map.has_same_parameters;
-      other = std::make_unique<Slam>(config_.slam, classes_, std::move(map.state), keep_reading);
+      if (!map.has_same_parameters) remark = "; it was made with other parameters than the present ones";
+      if (!map.remade.empty()) remark += "; " + describeRemade(map);
+      other =
+          std::make_unique<Slam>(config_.slam, classes_, stateOf(std::move(map), config_.slam, classes_), keep_reading);
     } catch (const InputError& error) {
       response.message = std::string(error.what()) + "; the running map stays";
       return;
@@ -188,8 +191,7 @@ bool SlamNode::loadMap(LoadMap::Request& request, LoadMap::Response& response) {
     noteStatus();
     response.success = true;
     response.message = "the map has " + std::to_string(publisher_.landmarks()) + " landmarks of " +
-                       std::to_string(slam_->map().submaps().size()) + " finished submaps";
-    if (!has_same_parameters) response.message += "; it was made with other parameters than the present ones";
+                       std::to_string(slam_->map().submaps().size()) + " finished submaps" + remark;
   });
 }
 

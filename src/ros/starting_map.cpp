@@ -5,6 +5,7 @@
 #include <ros/init.h>
 
 #include "semantic_mht_slam/bags/map_file.h"
+#include "semantic_mht_slam/bags/readable_map.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/map_path.h"
 
@@ -21,7 +22,9 @@ std::unique_ptr<Slam> startingSlam(const SystemConfig& config, const ClassTable&
     throw InputError("node/map: '" + node.map + "' is no absolute path (nodes do not run where roslaunch was called)");
   }
   const std::string path = mapPath(node.map, node.map_folder);
-  auto slam = std::make_unique<Slam>(config.slam, classes, readMapFile(path, config, classes, ros::ok).state, ros::ok);
+  LoadedMap map = readMapFile(path, config, classes, ros::ok);
+  if (!map.remade.empty()) ROS_WARN("%s", describeRemade(map).c_str());
+  auto slam = std::make_unique<Slam>(config.slam, classes, stateOf(std::move(map), config.slam, classes), ros::ok);
   if (localizes && slam->map().submaps().empty()) {
     throw InputError("node/map: '" + path + "' has no finished submap to localize in");
   }

@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/common/state_checks.h"
 #include "semantic_mht_slam/models/detection_state.h"
 #include "semantic_mht_slam/slam/drift_prior.h"
+#include "semantic_mht_slam/slam/map_delta.h"
 #include "semantic_mht_slam/slam/slam.h"
 #include "semantic_mht_slam/slam/slam_parts_state.h"
 
@@ -130,19 +131,20 @@ constexpr Section kSections[] = {{"detector", 3, transferDetector}, {"input", 6,
                                  {"submaps", 4, transferSubmaps},   {"keyframes", 5, transferKeyframes},
                                  {"graph", 5, transferGraph},       {"hypotheses", 9, transferMapper}};
 
+template <class Iterator>
+Iterator findSection(Iterator begin, Iterator end, const char* name) {
+  return std::find_if(begin, end, [&](const StateSection& section) { return section.name == name; });
+}
+
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these. The bytes of a
 /// section go when it has been read.
 void restore(SlamState& state, const KeepReading& keep_reading, const SlamConfig& config, const ClassTable& classes,
              SlamConfig& fitted, SlamParts& parts) {
+  const std::string problem = whyUnreadable(state);
+  if (!problem.empty()) throw InputError(problem);
   std::size_t memory = state.most_memory;
   for (const Section& section : kSections) {
-    const auto found = std::find_if(state.sections.begin(), state.sections.end(),
-                                    [&](const StateSection& other) { return other.name == section.name; });
-    if (found == state.sections.end()) throw InputError(std::string("the section '") + section.name + "' is missing");
-    if (found->version != section.version) {
-      throw InputError(std::string("the section '") + section.name + "' has version " + std::to_string(found->version) +
-                       ", this program reads version " + std::to_string(section.version));
-    }
+    const auto found = findSection(state.sections.begin(), state.sections.end(), section.name);
     try {
       StateArchive archive(found->bytes, keep_reading, classes.size(), memory);
       section.transfer(archive, fitted, parts);
@@ -160,6 +162,19 @@ void restore(SlamState& state, const KeepReading& keep_reading, const SlamConfig
 
 }  // namespace
 
+std::string whyUnreadable(const SlamState& state) {
+  for (const Section& section : kSections) {
+    const auto found = findSection(state.sections.begin(), state.sections.end(), section.name);
+    const std::string name = std::string("the section '") + section.name + "'";
+    if (found == state.sections.end()) return name + " is missing";
+    if (found->version != section.version) {
+      return name + " has version " + std::to_string(found->version) + ", this program reads version " +
+             std::to_string(section.version);
+    }
+  }
+  return "";
+}
+
 SlamState stateOf(const SlamConfig& fitted, const SlamParts& parts) {
   SlamState state;
   for (const Section& section : kSections) {
@@ -167,6 +182,7 @@ SlamState stateOf(const SlamConfig& fitted, const SlamParts& parts) {
     section.transfer(archive, fitted, const_cast<SlamParts&>(parts));  // a writing archive changes nothing
     state.sections.push_back({section.name, section.version, archive.written()});
   }
+  state.content = contentOf(parts);
   return state;
 }
 

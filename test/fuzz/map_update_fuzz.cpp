@@ -3,7 +3,7 @@
 
 #include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/bags/map_update_conversions.h"
-#include "semantic_mht_slam/merging/map_delta.h"
+#include "semantic_mht_slam/slam/map_delta.h"
 
 #include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"

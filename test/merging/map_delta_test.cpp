@@ -1,4 +1,4 @@
-#include "semantic_mht_slam/merging/map_delta.h"
+#include "semantic_mht_slam/slam/map_delta.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "semantic_mht_slam/slam/submap_content.h"
+
 namespace semantic_mht_slam {
 
 /// A part of what the estimator knows, as bytes of a `StateArchive`.
@@ -18,8 +20,12 @@ struct StateSection {
 /// the pose graph.
 struct SlamState {
   std::vector<StateSection> sections;
+  MapContent content;                               ///< what is finished, for others; a reader of sections needs none
   std::string source;                               ///< the file that it was read from, for messages; empty: none
   std::size_t most_memory = std::size_t{1} << 30U;  ///< bytes that what is made of it may take; less for a small file
 };
+
+/// Why this program cannot read the sections of a state: one is missing, or has another version. Empty if it can.
+std::string whyUnreadable(const SlamState& state);
 
 }  // namespace semantic_mht_slam

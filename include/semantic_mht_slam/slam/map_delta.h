@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/slam/slam.h"
+#include "semantic_mht_slam/slam/submap_content.h"
 
 namespace semantic_mht_slam {
 
@@ -48,6 +49,10 @@ struct MapByDeltas {
   std::vector<bool> held;  ///< of all closures in the deltas: whether it holds
 };
 
+SubmapContent contentOf(const SlamParts& parts, SubmapId submap);
+MapContent contentOf(const SlamParts& parts);
+
+MapDelta deltaOf(const SubmapContent& content);
 MapDelta deltaOf(const SlamParts& parts, SubmapId submap);
 
 /// Of every verified closure of a map whether it holds.
@@ -55,5 +60,8 @@ std::vector<bool> heldClosures(const Map& map);
 
 /// The map again, as the parts of an estimator. Throws InputError where the deltas contradict themselves.
 SlamParts makeMap(const MapByDeltas& map, const SlamConfig& config, const ClassTable& classes);
+
+/// The same as a state to go on from. What had been learned of the detector and of the odometry is not in it.
+SlamState makeState(const MapByDeltas& map, const SlamConfig& config, const ClassTable& classes);
 
 }  // namespace semantic_mht_slam
