@@ -26,13 +26,19 @@ constexpr const char* kSectionTopic = "/map_section";
 constexpr const char* kMapTopic = "/map";
 constexpr const char* kTrajectoryTopic = "/trajectory";
 
-/// Wherever the submap evaluator's tree was found, it is the same by its name.
-std::string parametersOf(SlamConfig config) {
+/// Wherever the submap evaluator's tree was found, it is the same by its name. What is said of fixes counts where there
+/// are some.
+std::string parametersOf(SlamConfig config, bool has_fixes) {
   std::string& tree = config.back_end.evaluator.tree;
   tree = std::filesystem::path(tree).filename().string();
   Fields fields;
   describe(config, fields);
+  if (has_fixes) fields.group("gnss", config.gnss);
   return toYaml(fields);
+}
+
+bool hasFixes(const std::vector<std::string>& sections) {
+  return std::find(sections.begin(), sections.end(), kFixesSection) != sections.end();
 }
 
 MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const SystemConfig& config) {
@@ -40,12 +46,12 @@ MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const Syst
   header.format_version = MapHeader::FORMAT;
   header.header = message.header;
   header.method = nameOf(config.slam.method);
-  header.config = parametersOf(config.slam);
-  header.config_digest = digestOf(header.config);
   header.classes = message.classes;
   header.submaps = static_cast<std::uint32_t>(map.submaps);
   header.landmarks = static_cast<std::uint32_t>(map.landmarks.size());
   for (const StateSection& section : map.state.sections) header.sections.push_back(section.name);
+  header.config = parametersOf(config.slam, hasFixes(header.sections));
+  header.config_digest = digestOf(header.config);
   return header;
 }
 
@@ -177,7 +183,7 @@ class MapReader {
     LoadedMap map;
     map.submaps = header.submaps;
     map.landmarks = header.landmarks;
-    map.has_same_parameters = header.config == parametersOf(config_.slam);
+    map.has_same_parameters = header.config == parametersOf(config_.slam, hasFixes(header.sections));
     map.state.source = path_;
     map.state.most_memory = mostMemory(size_);
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));

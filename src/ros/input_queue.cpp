@@ -20,9 +20,11 @@ void InputQueue::push(InputMessage message) {
 }
 
 void InputQueue::makeRoom() {
-  const auto objects = std::find_if(messages_.begin(), messages_.end(), isObjects);
-  ++(objects == messages_.end() ? dropped_odometry_ : dropped_objects_);
-  messages_.erase(objects == messages_.end() ? messages_.begin() : objects);
+  auto dropped = std::find_if(messages_.begin(), messages_.end(), isObjects);
+  if (dropped == messages_.end()) dropped = messages_.begin();
+  const bool is_fix = std::holds_alternative<sensor_msgs::NavSatFixConstPtr>(dropped->message);
+  ++(isObjects(*dropped) ? dropped_objects_ : is_fix ? dropped_fixes_ : dropped_odometry_);
+  messages_.erase(dropped);
 }
 
 void InputQueue::dropOverdue() {
@@ -80,6 +82,11 @@ std::size_t InputQueue::droppedOdometry() const {
 std::size_t InputQueue::droppedObjects() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return dropped_objects_;
+}
+
+std::size_t InputQueue::droppedFixes() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return dropped_fixes_;
 }
 
 }  // namespace semantic_mht_slam

@@ -73,6 +73,10 @@ PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sight
   return node;
 }
 
+void MapGraph::add(const std::vector<OuterPosition>& positions) {
+  for (const OuterPosition& position : positions) graph_.addPosition(position);
+}
+
 void MapGraph::removeClosure(ClosureId closure) {
   const auto factor = std::find(closure_of_factor_.begin(), closure_of_factor_.end(), closure);
   if (factor == closure_of_factor_.end()) throw std::invalid_argument("MapGraph: no closure of this graph");

@@ -119,16 +119,28 @@ void transferMapper(StateArchive& archive, const SlamConfig&, SlamParts& parts) 
   parts.closer->setOdometry(parts.odometry);
 }
 
+void transferFixes(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
+  parts.fixes.transfer(archive, parts.map);
+  parts.graph.transferPositions(archive);
+}
+
+/// Without any fix the state has no section of them, as that of a program that knows none.
+bool hasFixes(const SlamParts& parts) {
+  return parts.fixes.counters().received > 0;
+}
+
 /// What is written and read together, in the order in which it is read.
 struct Section {
   const char* name;
   int version;
   void (*transfer)(StateArchive& archive, const SlamConfig& config, SlamParts& parts);
+  bool (*isNeeded)(const SlamParts& parts) = nullptr;  ///< none: always
 };
 
-constexpr Section kSections[] = {{"detector", 3, transferDetector}, {"input", 6, transferInput},
-                                 {"submaps", 4, transferSubmaps},   {"keyframes", 5, transferKeyframes},
-                                 {"graph", 5, transferGraph},       {"hypotheses", 9, transferMapper}};
+constexpr Section kSections[] = {
+    {"detector", 3, transferDetector},          {"input", 6, transferInput}, {"submaps", 4, transferSubmaps},
+    {"keyframes", 5, transferKeyframes},        {"graph", 5, transferGraph}, {"hypotheses", 9, transferMapper},
+    {kFixesSection, 1, transferFixes, hasFixes}};
 
 /// The lengths follow the detector that the state was made with: `fitted` is `config` with these. The bytes of a
 /// section go when it has been read.
@@ -138,6 +150,7 @@ void restore(SlamState& state, const KeepReading& keep_reading, const SlamConfig
   for (const Section& section : kSections) {
     const auto found = std::find_if(state.sections.begin(), state.sections.end(),
                                     [&](const StateSection& other) { return other.name == section.name; });
+    if (found == state.sections.end() && section.isNeeded != nullptr) continue;
     if (found == state.sections.end()) throw InputError(std::string("the section '") + section.name + "' is missing");
     if (found->version != section.version) {
       throw InputError(std::string("the section '") + section.name + "' has version " + std::to_string(found->version) +
@@ -163,6 +176,7 @@ void restore(SlamState& state, const KeepReading& keep_reading, const SlamConfig
 SlamState stateOf(const SlamConfig& fitted, const SlamParts& parts) {
   SlamState state;
   for (const Section& section : kSections) {
+    if (section.isNeeded != nullptr && !section.isNeeded(parts)) continue;
     StateArchive archive;
     section.transfer(archive, fitted, const_cast<SlamParts&>(parts));  // a writing archive changes nothing
     state.sections.push_back({section.name, section.version, archive.written()});
