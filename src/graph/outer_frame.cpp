@@ -9,6 +9,8 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kFarthest_m = 1e8;
+constexpr double kLeastVariance_m2 = 1e-8;
 constexpr double kTiltStddev_rad = 0.035;  // of the first frame of a drive against the vertical
 
 using PoseMap = Eigen::Map<const Eigen::Quaterniond>;
@@ -120,13 +122,16 @@ void OuterFrame::transfer(StateArchive& archive, int nodes) {
   archive(is_aligned, block);
   Pose pose;
   readBlock(block.data(), pose);
-  archive.require(pose.isValid(), "a frame of fixes whose pose is none");
+  archive.require(pose.isValid() && pose.translation_m.norm() <= kFarthest_m, "a frame of fixes whose pose is none");
   const std::size_t count = archive.count<OuterPosition>(factors.size());
   for (std::size_t i = 0; i < count; ++i) {
     OuterPosition position = archive.isReading() ? OuterPosition{} : factors[i].position;
     archive(position.node, position.in_node_m, position.measured_m, position.cov_m2);
     archive.require(position.node >= 0 && position.node < nodes, "a fix of a keyframe that there is not");
-    archive.require(isPositive(position.cov_m2), "a fix whose covariance is not positive");
+    archive.require(isPositive(position.cov_m2) && position.cov_m2.diagonal().minCoeff() >= kLeastVariance_m2,
+                    "a fix whose covariance is not positive, or next to nothing");
+    archive.require(position.measured_m.norm() <= kFarthest_m && position.in_node_m.norm() <= kFarthest_m,
+                    "a fix that is not on the Earth");
     if (archive.isReading()) add(position, *this);
   }
 }
