@@ -93,7 +93,7 @@ std::vector<std::string> droppedFixes(const GnssCounters& counters, const Refuse
           "the stamp is zero, negative, or beyond the end of ROS's time");
   dropped(counters.repeated, "there is another one of the same stamp");
   dropped(counters.late, "they came after their keyframes had been looked at (gnss.max_delay)");
-  dropped(counters.far_ahead, "the stamp is far ahead of the odometry, or too many wait");
+  dropped(counters.far_ahead, "the stamp is far ahead of the odometry");
   dropped(counters.far_away, "nowhere near the other fixes");
   dropped(counters.no_odometry, "in a gap of the odometry");
   if (refused.fixes_without_transform > 0) {

@@ -17,7 +17,7 @@ constexpr double kNextFix_m = 1000.0;   // from the one before
 constexpr double kFarthestFix_m = 2e5;  // from the origin; the tangent plane is no plane of the drive any more
 constexpr double kNullIsland_deg = 1e-9;
 constexpr Stamp kFarAheadOfKeyframes = 600LL * 1000000000LL;
-constexpr std::size_t kMostWaiting = 100000;
+constexpr std::size_t kMostWaiting = 6000;  // ten minutes of a fast receiver; no keyframe comes while one localizes
 
 GeodeticPoint withAltitude(GeodeticPoint place, double altitude_m) {
   if (!std::isfinite(place.altitude_m)) place.altitude_m = altitude_m;
@@ -109,9 +109,7 @@ void GnssFixes::add(const GnssFix& fix) {
   const bool has_altitude = std::isfinite(fix.place.altitude_m);
   waiting_.insert(
       place, {fix.stamp, withAltitude(fix.place, 0.0), has_altitude, covOf(fix), fix.antenna_m.value_or(configured_m)});
-  if (waiting_.size() <= kMostWaiting) return;
-  waiting_.pop_back();
-  ++counters_.far_ahead;
+  if (waiting_.size() > kMostWaiting) waiting_.pop_front();
 }
 
 /// The fix that is nearest to a keyframe of those that are nearer to it than to its neighbours; null if there is none.

@@ -184,6 +184,24 @@ TEST_F(GnssFixesTest, AFirstFixOnAnotherContinentIsNotTheOrigin) {
   EXPECT_EQ(slam.parts().fixes.counters().repeated, 1U);
 }
 
+TEST_F(GnssFixesTest, WhereNoKeyframesComeTheNewestFixesAreKept) {
+  GnssFixes fixes(config_.gnss);
+  const auto sizeAfter = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      GnssFix fix = squareFixAt(drive_, 0);
+      fix.stamp = SquareDrive::stampAt(i);
+      fixes.add(fix);
+    }
+    StateArchive archive;
+    fixes.transfer(archive, Map(0.5));
+    return archive.written().size();
+  };
+  const std::size_t few = sizeAfter(0, 1000);
+  const std::size_t full = sizeAfter(1000, 7000);
+  EXPECT_LT(sizeAfter(7000, 9000), full + 1000U);
+  EXPECT_LT(full, 7U * few);
+}
+
 TEST_F(GnssFixesTest, WithoutCovarianceAndAltitudeTheDefaultsHold) {
   Slam slam(config_, classes_);
   for (int i = 0; i < 480; ++i) {

@@ -42,7 +42,7 @@ struct GnssCounters {
   std::size_t bad_stamps = 0;           ///< dropped: no time that ROS can write
   std::size_t repeated = 0;             ///< dropped: there is another one of that stamp
   std::size_t late = 0;                 ///< dropped: the keyframes of that time have been looked at
-  std::size_t far_ahead = 0;            ///< dropped: the stamp is far ahead of the keyframes, or too many wait
+  std::size_t far_ahead = 0;            ///< dropped: the stamp is far ahead of the keyframes
   std::size_t far_away = 0;             ///< dropped: nowhere near the fixes before
   std::size_t no_odometry = 0;          ///< dropped: in a gap of the odometry
 };
@@ -56,7 +56,8 @@ struct GeoReference {
   Pose T_enu_map;
 };
 
-/// Keeps the fixes that came until their keyframes are there, and makes positions of keyframes of them. The result
+/// Keeps the fixes that came until their keyframes are there, and makes positions of keyframes of them. Where no
+/// keyframes come, the newest thousands are kept. The result
 /// depends on stamps alone, not on the order of arrival, for fixes that are late by no more than `max_delay_s`.
 class GnssFixes {
  public:
