@@ -123,7 +123,7 @@ void OuterFrame::transfer(StateArchive& archive, int nodes) {
   Pose pose;
   readBlock(block.data(), pose);
   archive.require(pose.isValid() && pose.translation_m.norm() <= kFarthest_m, "a frame of fixes whose pose is none");
-  const std::size_t count = archive.count<OuterPosition>(factors.size());
+  const std::size_t count = archive.count(factors.size(), sizeof(Factor) + sizeof(OuterPointCost));
   for (std::size_t i = 0; i < count; ++i) {
     OuterPosition position = archive.isReading() ? OuterPosition{} : factors[i].position;
     archive(position.node, position.in_node_m, position.measured_m, position.cov_m2);

@@ -9,6 +9,10 @@ bool InputQueue::isObjects(const Waiting& waiting) {
   return std::holds_alternative<SemanticObjectArrayConstPtr>(waiting.message);
 }
 
+bool InputQueue::isFix(const Waiting& waiting) {
+  return std::holds_alternative<sensor_msgs::NavSatFixConstPtr>(waiting.message);
+}
+
 void InputQueue::push(InputMessage message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -21,9 +25,9 @@ void InputQueue::push(InputMessage message) {
 
 void InputQueue::makeRoom() {
   auto dropped = std::find_if(messages_.begin(), messages_.end(), isObjects);
+  if (dropped == messages_.end()) dropped = std::find_if(messages_.begin(), messages_.end(), isFix);
   if (dropped == messages_.end()) dropped = messages_.begin();
-  const bool is_fix = std::holds_alternative<sensor_msgs::NavSatFixConstPtr>(dropped->message);
-  ++(isObjects(*dropped) ? dropped_objects_ : is_fix ? dropped_fixes_ : dropped_odometry_);
+  ++(isObjects(*dropped) ? dropped_objects_ : isFix(*dropped) ? dropped_fixes_ : dropped_odometry_);
   messages_.erase(dropped);
 }
 

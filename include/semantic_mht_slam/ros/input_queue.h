@@ -22,8 +22,8 @@ using InputMessage =
     std::variant<nav_msgs::OdometryConstPtr, SemanticObjectArrayConstPtr, sensor_msgs::NavSatFixConstPtr>;
 
 /// Bounded queue between the subscribers and the worker. What is too much for the worker is dropped and counted:
-/// objects that have waited for too long, and when the queue is full the oldest objects, or the oldest of the other
-/// messages if none waits.
+/// objects that have waited for too long, and when the queue is full the oldest objects, else the oldest fix, or the
+/// oldest odometry if neither waits.
 class InputQueue {
  public:
   using Clock = std::chrono::steady_clock;
@@ -58,6 +58,7 @@ class InputQueue {
   };
 
   static bool isObjects(const Waiting& waiting);
+  static bool isFix(const Waiting& waiting);
   void makeRoom();
   void dropOverdue();
 
