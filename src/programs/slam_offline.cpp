@@ -84,6 +84,10 @@ void requireInputAndOutput(const Arguments& arguments) {
   if (arguments.bag.empty() == arguments.dataset.folder.empty())
     throw InputError("one of --dataset and --bag is needed");
   if (arguments.output.empty()) throw InputError("--output is needed");
+  if (!arguments.bag.empty() && !arguments.dataset.fixes.empty())
+    throw InputError("--fixes goes with --dataset; fixes of a bag are on a topic of it (--fixes-topic)");
+  if (arguments.bag.empty() && !arguments.topics.fixes_topic.empty())
+    throw InputError("--fixes-topic goes with --bag; fixes beside a data set are in a file (--fixes)");
 }
 
 SystemConfig loadConfig(const Arguments& arguments) {
