@@ -6,7 +6,6 @@
 namespace semantic_mht_slam {
 namespace {
 
-constexpr std::size_t kFewest = 6;           // that agree
 constexpr double kMostYawStddev_rad = 0.06;  // of a frame that is determined
 constexpr double kAgreeSq = 9.0;             // squared distance in units of the variance
 constexpr std::size_t kTriedPoints = 24;     // of which each two make a hypothesis
@@ -118,7 +117,7 @@ double heightOf(const PlanarAlignment& alignment, const std::vector<PointPair>& 
 }  // namespace
 
 std::optional<Pose> alignOuterFrame(const std::vector<PointPair>& pairs) {
-  if (pairs.size() < kFewest) return std::nullopt;
+  if (pairs.size() < kFewestPairs) return std::nullopt;
   const std::optional<PlanarAlignment> first = bestOfTwo(pairs);
   if (!first) return std::nullopt;
   Weighted estimate;
@@ -127,7 +126,7 @@ std::optional<Pose> alignOuterFrame(const std::vector<PointPair>& pairs) {
   const auto agree = static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), [&](const PointPair& pair) {
     return distanceSq(estimate.alignment, pair) <= kAgreeSq;
   }));
-  if (agree < kFewest || 2 * agree <= pairs.size()) return std::nullopt;
+  if (agree < kFewestPairs || 2 * agree <= pairs.size()) return std::nullopt;
   if (!(estimate.spread * kMostYawStddev_rad * kMostYawStddev_rad >= 1.0)) return std::nullopt;
   const PlanarAlignment& alignment = estimate.alignment;
   return Pose{expRotation({0.0, 0.0, alignment.yaw_rad}),

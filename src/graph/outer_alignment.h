@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct PointPair {
   Eigen::Vector3d measured_m;  ///< outer frame
   Eigen::Matrix3d cov_m2;      ///< of the measurement
 };
+
+/// Measurements without which nothing is determined.
+constexpr std::size_t kFewestPairs = 6;
 
 /// T_outer_world as most of the measurements have it: a turn about the vertical and a translation. Empty as long as
 /// they don't determine it: fewer than half of them agree, or the way between them is too short for their noise. The

@@ -5,6 +5,7 @@
 #include "semantic_mht_slam/common/state_checks.h"
 
 #include "marginals.h"
+#include "outer_alignment.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -134,6 +135,7 @@ void OuterFrame::transfer(StateArchive& archive, int nodes) {
                     "a fix that is not on the Earth");
     if (archive.isReading()) add(position, *this);
   }
+  archive.require(!is_aligned || factors.size() >= kFewestPairs, "a frame of fixes that these do not determine");
 }
 
 void add(const OuterPosition& position, OuterFrame& frame) {
