@@ -38,7 +38,7 @@ LIBRARIES = {
     "PCL": (r"pcl/(?!sample_consensus|point_types|point_cloud)", {"perception"}, {"perception"}),
     "yaml-cpp": (r"yaml-cpp/", {"io"}, set()),
     "nlohmann-json": (r"nlohmann/", {"io", "app", "programs"}, set()),
-    "GeographicLib": (r"GeographicLib/", {"app"}, set()),
+    "GeographicLib": (r"GeographicLib/", {"models"}, set()),
     "Boost.Program_options": (r"boost/program_options", {"programs"}, set()),
 }
 INCLUDE = re.compile(r'^\s*(?:/\*.*\*/\s*)?#\s*include\s*[<"]([^>"]+)[>"]')

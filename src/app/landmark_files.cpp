@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <nlohmann/json.hpp>
 
 #include "semantic_mht_slam/common/error.h"
@@ -13,6 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kAhead_m = 100.0;          // on the x axis of the map, to see where that points
 constexpr double kMostLatitude_deg = 89.9;  // closer to a pole there is no east worth the name
 
 std::vector<double> asList(const Eigen::Vector3d& vector, int decimals) {
@@ -45,6 +45,15 @@ Json featureOf(const MixtureLandmark& landmark, const ClassTable& classes, const
 
 }  // namespace
 
+MapOrigin originOf(const GeoReference& reference) {
+  const auto placeOf = [&](const Eigen::Vector3d& in_map_m) {
+    return toGeodetic(reference.origin, reference.T_enu_map * in_map_m);
+  };
+  const GeodeticPoint origin = placeOf(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d ahead_m = toEastNorthUp(origin, placeOf({kAhead_m, 0.0, 0.0}));
+  return {origin.latitude_deg, origin.longitude_deg, std::atan2(ahead_m.y(), ahead_m.x())};
+}
+
 void requireUsable(const MapOrigin& origin) {
   const auto isWithin = [](double value, double most) { return std::isfinite(value) && std::abs(value) <= most; };
   if (!isWithin(origin.latitude_deg, kMostLatitude_deg) || !isWithin(origin.longitude_deg, 180.0)) {
@@ -55,11 +64,8 @@ void requireUsable(const MapOrigin& origin) {
 
 Eigen::Vector2d toLatitudeLongitude(const MapOrigin& origin, const Eigen::Vector3d& position_m) {
   const Eigen::Vector3d east_north_up = Eigen::AngleAxisd(origin.heading_rad, Eigen::Vector3d::UnitZ()) * position_m;
-  Eigen::Vector2d place_deg;
-  double height_m = 0.0;
-  GeographicLib::LocalCartesian(origin.latitude_deg, origin.longitude_deg)
-      .Reverse(east_north_up.x(), east_north_up.y(), east_north_up.z(), place_deg.x(), place_deg.y(), height_m);
-  return place_deg;
+  const GeodeticPoint place = toGeodetic({origin.latitude_deg, origin.longitude_deg, 0.0}, east_north_up);
+  return {place.latitude_deg, place.longitude_deg};
 }
 
 std::string landmarksCsv(const std::vector<MixtureLandmark>& landmarks, const ClassTable& classes) {

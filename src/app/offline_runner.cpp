@@ -71,15 +71,18 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   Slam slam = start == nullptr ? Slam(config, classes) : Slam(config, classes, *start);
   const std::vector<StampedPose> known = trajectoryOf(slam);
   const InputCounters counted = slam.parts().assembler.counters();
+  const GnssCounters counted_fixes = slam.parts().fixes.counters();
   const bool is_another_drive = start != nullptr && slam.parts().sessions.latestOdometry() &&
                                 !recording.odometry.empty() && !goesOn(slam, recording.odometry.front());
   if (is_another_drive) slam.beginSession();
   const Stopwatch watch;
   auto frame = recording.detector_frames.begin();
+  auto fix = recording.fixes.begin();
   for (std::size_t i = 0; i < recording.odometry.size(); ++i) {
     const Stopwatch step_watch;
     const double mapping_before_s = slam.parts().mapping_s;
     const std::optional<StampedPose> waits = slam.parts().unconfirmed;
+    for (; fix != recording.fixes.end() && fix->stamp <= recording.odometry[i].stamp; ++fix) slam.addFix(*fix);
     const std::size_t outliers = slam.parts().assembler.counters().odometry_outliers;
     const bool is_used = slam.addOdometry(recording.odometry[i]);
     if (is_used && waits && slam.parts().assembler.counters().odometry_outliers == outliers) {
@@ -101,6 +104,7 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
     progress(i + 1, recording.odometry.size());
   }
   for (; frame != recording.detector_frames.end(); ++frame) slam.addDetections(frame->stamp, frame->detections);
+  for (; fix != recording.fixes.end(); ++fix) slam.addFix(*fix);
   slam.finish();
   const MapUncertainty uncertainty = uncertaintyOf(slam);
   result.seconds = watch.elapsed_s();
@@ -115,6 +119,8 @@ RunResult runOffline(const Recording& recording, const SlamConfig& config, const
   result.counters = slam.parts().assembler.counters() - counted;
   result.counters.frames_waiting_too_long += slam.parts().assembler.waiting();  // nothing comes any more
   result.counters.odometry_outliers += slam.parts().unconfirmed ? 1 : 0;
+  result.fixes = slam.parts().fixes.counters() - counted_fixes;
+  result.geo_reference = geoReferenceOf(slam);
   result.landmarks = landmarksOf(slam, uncertainty);
   result.loop_closures = loopClosures(slam.map());
   if (slam.parts().closer) result.submap_checks = submapResults(slam.map(), *slam.parts().closer);

@@ -7,6 +7,7 @@ namespace semantic_mht_slam {
 Recording toRecording(Dataset dataset) {
   Recording recording;
   recording.T_base_cam0 = dataset.T_cam0_base.inverse();
+  recording.fixes = std::move(dataset.fixes);
   for (std::size_t i = 0; i < dataset.frames(); ++i) {
     const Stamp stamp = dataset.stamps[i];
     recording.odometry.push_back({stamp, dataset.T_odom_base[i]});

@@ -80,4 +80,27 @@ std::vector<std::string> droppedInput(const InputCounters& counters, const Refus
   return lines;
 }
 
+std::vector<std::string> droppedFixes(const GnssCounters& counters, const RefusedInput& refused,
+                                      const InputNames& names) {
+  std::vector<std::string> lines;
+  const auto dropped = [&](std::size_t count, const std::string& problem) {
+    if (count > 0) lines.push_back(names.fixes + ": " + std::to_string(count) + " fixes dropped: " + problem);
+  };
+  dropped(counters.no_fix, "the receiver says that it has none");
+  dropped(counters.invalid, "not finite, not on the Earth, or an antenna 1 km away");
+  dropped(counters.null_island, "latitude and longitude are both zero");
+  dropped(counters.bad_stamps + refused.fixes_bad_stamps,
+          "the stamp is zero, negative, or beyond the end of ROS's time");
+  dropped(counters.repeated, "there is another one of the same stamp");
+  dropped(counters.late, "they came after their keyframes had been looked at (gnss.max_delay)");
+  dropped(counters.far_ahead, "the stamp is far ahead of the odometry");
+  dropped(counters.far_away, "nowhere near the other fixes");
+  dropped(counters.no_odometry, "in a gap of the odometry");
+  if (refused.fixes_without_transform > 0) {
+    lines.push_back(names.fixes + ": no transform from '" + refused.antenna_frame + "' to '" + names.base_frame +
+                    "'; the antenna is taken to be where gnss.antenna_x, _y and _z have it");
+  }
+  return lines;
+}
+
 }  // namespace semantic_mht_slam

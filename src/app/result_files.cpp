@@ -13,6 +13,8 @@
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
 
+#include "gnss_report.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -279,6 +281,8 @@ void writeReport(const std::string& folder, const Recording& recording, const Ru
                  {"input", toJson(result.counters)}};
   report["input"].update(toJson(recording.refused));
   report["input"]["dropped"] = droppedInput(result.counters, recording.refused, recording.names);
+  const auto fixes = gnssReport(result.fixes, recording.refused, recording.names, result.geo_reference);
+  if (fixes) report["fixes"] = *fixes;
   report["sessions"] = toJson(result.sessions);
   report["moving"] = {{"detections_flagged", result.moving.flagged}, {"detections_found", result.moving.found}};
   report["detector_range_m"] = result.detector_range_m;

@@ -77,6 +77,7 @@ void describe(NodeConfig& config, Fields& fields) {
 void describe(SystemConfig& config, Fields& fields) {
   fields.add("class_table", config.class_table, "Class table file; relative to this file or to the package's config.");
   describe(config.slam, fields);
+  fields.group("gnss", config.slam.gnss);
   fields.group("node", config.node);
 }
 

@@ -10,6 +10,7 @@
 
 #include "semantic_mht_slam/bags/bag_file.h"
 #include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/fix_gate.h"
 #include "semantic_mht_slam/bags/guarded_bag.h"
 #include "semantic_mht_slam/bags/objects_gate.h"
 #include "semantic_mht_slam/common/error.h"
@@ -18,6 +19,8 @@
 
 namespace semantic_mht_slam {
 namespace {
+
+constexpr const char* kFixes = "fix";
 
 /// tf2 prints every transform that it leaves out, of which a recording may be full.
 class QuietTf {
@@ -83,7 +86,9 @@ class BagReader {
   void readInput(const rosbag::Bag& bag) {
     recording_.names = {findTopic<nav_msgs::Odometry>(bag, layout_.odometry_topic),
                         findTopic<SemanticObjectArray>(bag, layout_.objects_topic), frames_.base_frame};
-    const std::vector<std::string> topics{"/tf", recording_.names.odometry, recording_.names.objects};
+    std::vector<std::string> topics{"/tf", recording_.names.odometry, recording_.names.objects};
+    const std::string fixes = fixesTopic(bag);
+    if (!fixes.empty()) topics.push_back(recording_.names.fixes = fixes);
     for (const rosbag::MessageInstance& instance : rosbag::View(bag, rosbag::TopicQuery(topics))) {
       now_s_ = instance.getTime().toSec();
       if (instance.getTopic() == recording_.names.odometry) {
@@ -91,13 +96,27 @@ class BagReader {
       } else if (instance.getTopic() == recording_.names.objects) {
         objects_gate_.hold(*instantiate<SemanticObjectArray>(instance), odometry_gate_, now_s_, recording_.refused);
         if (!odometry_gate_.isHolding()) takeObjects();
+      } else if (instance.getTopic() == fixes) {
+        add(*instantiate<sensor_msgs::NavSatFix>(instance));
       } else {
         addTransforms(instance, false);
       }
     }
+    std::stable_sort(recording_.fixes.begin(), recording_.fixes.end(),
+                     [](const GnssFix& a, const GnssFix& b) { return a.stamp < b.stamp; });
     now_s_ = std::numeric_limits<double>::infinity();  // nothing more comes: what waits is decided now
     odometry_gate_.giveUpHeld(recording_.refused);
     takeObjects();
+  }
+
+  /// Empty if nobody asked for fixes and there are none.
+  std::string fixesTopic(const rosbag::Bag& bag) const {
+    if (!layout_.fixes_topic.empty()) return findTopic<sensor_msgs::NavSatFix>(bag, layout_.fixes_topic);
+    const std::string expected = ros::message_traits::datatype<sensor_msgs::NavSatFix>();
+    for (const rosbag::ConnectionInfo* connection : rosbag::View(bag).getConnections()) {
+      if (withoutSlash(connection->topic) == kFixes && connection->datatype == expected) return connection->topic;
+    }
+    return {};
   }
 
   void require(bool condition, const std::string& problem) const {
@@ -162,12 +181,20 @@ class BagReader {
     takeObjects();
   }
 
+  void add(const sensor_msgs::NavSatFix& message) {
+    const std::optional<GnssFix> fix = toFix(message, sensors_, frames_, recording_.refused);
+    if (!fix) return;
+    recording_.fixes.push_back(*fix);
+    recording_.fixes.back().stamp -= time_origin_;
+  }
+
   /// The clock falls back: the node begins a new map.
   void beginAgain() {
     recording_.refused.odometry_before_jump += recording_.odometry.size();
     recording_.refused.objects_before_jump += recording_.detector_frames.size();
     recording_.odometry.clear();
     recording_.detector_frames.clear();
+    recording_.fixes.clear();
     sensors_.forgetOdometry();
     latest_.reset();
   }

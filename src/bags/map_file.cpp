@@ -1,7 +1,6 @@
 #include "semantic_mht_slam/bags/map_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 
@@ -21,6 +20,8 @@
 #include "semantic_mht_slam/io/existing_path.h"
 #include "semantic_mht_slam/io/output_file.h"
 
+#include "shortened.h"
+
 namespace semantic_mht_slam {
 namespace {
 
@@ -29,13 +30,19 @@ constexpr const char* kSectionTopic = "/map_section";
 constexpr const char* kMapTopic = "/map";
 constexpr const char* kTrajectoryTopic = "/trajectory";
 
-/// Wherever the submap evaluator's tree was found, it is the same by its name.
-std::string parametersOf(SlamConfig config) {
+/// Wherever the submap evaluator's tree was found, it is the same by its name. What is said of fixes counts where there
+/// are some.
+std::string parametersOf(SlamConfig config, bool has_fixes) {
   std::string& tree = config.back_end.evaluator.tree;
   tree = std::filesystem::path(tree).filename().string();
   Fields fields;
   describe(config, fields);
+  if (has_fixes) fields.group("gnss", config.gnss);
   return toYaml(fields);
+}
+
+bool hasFixes(const std::vector<std::string>& sections) {
+  return std::find(sections.begin(), sections.end(), kFixesSection) != sections.end();
 }
 
 MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const SystemConfig& config) {
@@ -43,62 +50,17 @@ MapHeader makeHeader(const SavedMap& map, const SemanticMap& message, const Syst
   header.format_version = MapHeader::FORMAT;
   header.header = message.header;
   header.method = nameOf(config.slam.method);
-  header.config = parametersOf(config.slam);
-  header.config_digest = digestOf(header.config);
   header.classes = message.classes;
   header.submaps = static_cast<std::uint32_t>(map.submaps);
   header.landmarks = static_cast<std::uint32_t>(map.landmarks.size());
   for (const StateSection& section : map.state.sections) header.sections.push_back(section.name);
+  header.config = parametersOf(config.slam, hasFixes(header.sections));
+  header.config_digest = digestOf(header.config);
   return header;
 }
 
 constexpr std::size_t kPiece = std::size_t{1} << 20U;
 constexpr std::size_t kBesidePiece = 1U << 10U;  // name, version, digest
-
-/// What follows is for people and other programs, to whom most digits are noise, and most of what a number takes.
-void shorten(geometry_msgs::Point& point) {
-  constexpr double kStep_m = 1.0 / 1024.0;
-  for (double* value : {&point.x, &point.y, &point.z}) *value = kStep_m * std::round(*value / kStep_m);
-}
-
-void shorten(geometry_msgs::Quaternion& q) {
-  constexpr double kStep = 1.0 / (1 << 20);
-  for (double* value : {&q.x, &q.y, &q.z, &q.w}) *value = kStep * std::round(*value / kStep);
-}
-
-/// To four digits.
-void shorten(double& value) {
-  constexpr int kBits = 13;
-  int exponent = 0;
-  const double fraction = std::frexp(value, &exponent);
-  value = std::ldexp(std::round(std::ldexp(fraction, kBits)), exponent - kBits);
-}
-
-nav_msgs::Path shortened(nav_msgs::Path path) {
-  for (geometry_msgs::PoseStamped& stamped : path.poses) {
-    shorten(stamped.pose.position);
-    shorten(stamped.pose.orientation);
-  }
-  return path;
-}
-
-SemanticMap shortened(SemanticMap map) {
-  for (Landmark& landmark : map.landmarks) {
-    shorten(landmark.position);
-    for (double& value : landmark.class_probs) shorten(value);
-    for (double& value : landmark.covariance) shorten(value);
-    for (double* value :
-         {&landmark.existence_prob, &landmark.seen_standing, &landmark.size.x, &landmark.size.y, &landmark.size.z}) {
-      shorten(*value);
-    }
-    for (GaussianComponent& component : landmark.components) {
-      shorten(component.weight);
-      shorten(component.mean);
-      for (double& value : component.covariance) shorten(value);
-    }
-  }
-  return map;
-}
 
 /// One after the other; none so large that reading it could not be interrupted.
 std::vector<MapSection> toMessages(const StateSection& section) {
@@ -188,7 +150,7 @@ class MapReader {
     LoadedMap map;
     map.submaps = header.submaps;
     map.landmarks = header.landmarks;
-    map.has_same_parameters = header.config == parametersOf(config_.slam);
+    map.has_same_parameters = header.config == parametersOf(config_.slam, hasFixes(header.sections));
     map.state.source = path_;
     map.state.most_memory = mostMemory(size_);
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{kSectionTopic}));

@@ -14,6 +14,7 @@
 #include "semantic_mht_slam/graph/pose_graph.h"
 
 #include "cost_functions.h"
+#include "outer_frame.h"
 #include "pose_block.h"
 
 namespace semantic_mht_slam {
@@ -76,11 +77,12 @@ struct GraphState {
   std::map<std::int64_t, std::int64_t> group_of;  ///< number by which a landmark is kept, of those that have several
   std::deque<LoopState3> loops;
   std::size_t priors = 0;  ///< of all nodes together
+  OuterFrame outer;        ///< with the positions of nodes in it
 
   int nodeCount() const { return static_cast<int>(nodes.size()); }
   int loopCount() const { return static_cast<int>(loops.size()); }
 
-  /// Into an empty state, or out of one.
+  /// Into an empty state, or out of one; without the outer frame, which has a place of its own.
   void transfer(StateArchive& archive);
 
   /// The number by which the landmark with a number is kept.

@@ -1,6 +1,7 @@
 #include "hierarchy.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "semantic_mht_slam/common/dense_solvers.h"
 
@@ -63,7 +64,7 @@ void Hierarchy::addHub(GraphState& graph, const LoopReview& review, int newest) 
 }
 
 std::optional<std::vector<NodeMarginal>> Hierarchy::marginals(GraphState& graph) const {
-  auto result = skeleton_.marginals();
+  auto result = skeleton_.marginals(outerOfHubs(graph).get());
   const int newest = graph.nodeCount() - 1;
   if (!result || result->empty() || chunkOf(newest) + 1 != skeleton_.hubs()) return std::nullopt;
   for (NodeMarginal& hub : *result) hub.node = firstOf(hub.node);
@@ -150,6 +151,37 @@ void Hierarchy::addPriors(GraphState& graph) {
   }
 }
 
+/// What is far from the estimate is news, but a wrong position must not be more than several right ones.
+void Hierarchy::noticePositions(const GraphState& graph) {
+  const OuterFrame& outer = graph.outer;
+  if (!outer.is_aligned) return;
+  is_pending_ = is_pending_ || (positions_in_ == 0 && !outer.factors.empty());
+  for (; positions_in_ < outer.factors.size(); ++positions_in_) {
+    const OuterFrame::Factor& factor = outer.factors[positions_in_];
+    news_ += std::log1p(outer.distanceSq(factor, graph.nodes[factor.position.node].block.data()));
+  }
+}
+
+void Hierarchy::takePositionsAsKnown(const GraphState& graph) {
+  positions_in_ = graph.outer.is_aligned ? graph.outer.factors.size() : 0;
+}
+
+/// The outer frame with the positions seen from the nearest hubs, as the chunks are shaped now; none without any.
+std::unique_ptr<OuterFrame> Hierarchy::outerOfHubs(const GraphState& graph) const {
+  if (!graph.outer.is_aligned) return nullptr;
+  auto outer = std::make_unique<OuterFrame>();
+  outer->is_aligned = true;
+  outer->block = graph.outer.block;
+  for (const OuterFrame::Factor& factor : graph.outer.factors) {
+    OuterPosition position = factor.position;
+    const Pose T_world_node = graph.nodes[position.node].pose();
+    position.node = nearestHub(position.node);
+    const Pose T_hub_node = graph.nodes[firstOf(position.node)].pose().inverse() * T_world_node;
+    outer->factors.push_back({position, factor.cost->seenFrom(T_hub_node)});
+  }
+  return outer;
+}
+
 double Hierarchy::gap(const GraphState& graph, int loop) const {
   const std::optional<int> link = loop_links_[loop].link;
   return link ? skeleton_.mahalanobisSq(*link) : mahalanobisSq(graph, graph.loops[loop].constraint);
@@ -165,6 +197,7 @@ double Hierarchy::quietGap() const {
 
 bool Hierarchy::update(GraphState& graph, const LoopReview& review) {
   addPriors(graph);
+  noticePositions(graph);
   const int known = static_cast<int>(loop_links_.size());
   for (int i = std::min(known, review.firstOpen(graph)); i < graph.loopCount(); ++i) {
     const bool is_new = i >= known;
@@ -180,9 +213,11 @@ bool Hierarchy::update(GraphState& graph, const LoopReview& review) {
 }
 
 Skeleton::Outcome Hierarchy::solve(GraphState& graph, const LoopReview& review, double max_seconds) {
-  const Skeleton::Outcome outcome = skeleton_.optimize(config_.global_iterations, max_seconds);
+  const std::unique_ptr<OuterFrame> outer = outerOfHubs(graph);
+  const Skeleton::Outcome outcome = skeleton_.optimize(config_.global_iterations, max_seconds, outer.get());
   is_pending_ = outcome.failure.empty() && !outcome.converged;
   news_ = 0.0;
+  if (outcome.failure.empty() && outer) graph.outer.block = outer->block;
   if (outcome.failure.empty()) moveNodes(graph, review);
   return outcome;
 }

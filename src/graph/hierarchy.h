@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -38,6 +39,9 @@ class Hierarchy {
 
   /// Takes over the states of loop closures and adds new priors; true if the skeleton has to be solved for them.
   bool update(GraphState& graph, const LoopReview& review);
+
+  /// The positions in the outer frame that there are have brought their news already.
+  void takePositionsAsKnown(const GraphState& graph);
 
   /// See `PoseGraph::coarseMarginals`.
   std::optional<std::vector<NodeMarginal>> marginals(GraphState& graph) const;
@@ -89,6 +93,8 @@ class Hierarchy {
   std::optional<int> addLiftedLink(const GraphState& graph, const LoopReview& review, const LoopConstraint& loop);
   void addSharedLandmarks(const GraphState& graph, const LoopReview& review, int node);
   void addPriors(GraphState& graph);
+  void noticePositions(const GraphState& graph);
+  std::unique_ptr<OuterFrame> outerOfHubs(const GraphState& graph) const;
   void moveNodes(GraphState& graph, const LoopReview& review);
   void moveChunk(GraphState& graph, const LoopReview& review, int chunk, const std::vector<Pose>& old_hubs);
   void addBend(int first, int last, const Vector6d& bend);
@@ -100,6 +106,7 @@ class Hierarchy {
   std::set<int> touched_;                   ///< nodes that saw landmarks that were merged
   std::vector<std::size_t> prior_links_;    ///< per node: how many of its priors are in
   std::size_t priors_in_ = 0;               ///< sum of `prior_links_`
+  std::size_t positions_in_ = 0;            ///< of the outer frame, once that is aligned
   std::vector<double> bend_;                ///< per piece of `window_nodes`, metres
   double news_ = 0.0;  ///< Mahalanobis distances squared that loop closures brought since the skeleton was solved
   bool is_pending_ = false;

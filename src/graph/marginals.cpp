@@ -93,6 +93,9 @@ std::vector<std::vector<int>> cliquesOf(const GraphState& graph, const std::vect
     if (takesPart(loop)) cliques.push_back({loop.constraint.from, loop.constraint.to});
   }
   for (const PointInformation& point : points) cliques.push_back(point.nodes);
+  if (graph.outer.is_aligned) {
+    for (const auto& factor : graph.outer.factors) cliques.push_back({factor.position.node, graph.nodeCount()});
+  }
   return cliques;
 }
 
@@ -167,7 +170,8 @@ std::optional<GraphMarginals> marginalsOf(const GraphState& graph, const PoseGra
   const ceres::CauchyLoss landmark_loss(config.landmark_cauchy_scale);
   std::vector<PointInformation> points;
   for (const auto& [id, landmark] : graph.landmarks) points.push_back(informationOf(landmark, graph, landmark_loss));
-  PoseInformation poses(graph.nodeCount(), cliquesOf(graph, points));
+  const int frame = graph.nodeCount();  // the outer one, behind the nodes
+  PoseInformation poses(graph.outer.is_aligned ? frame + 1 : frame, cliquesOf(graph, points));
   const Pose origin = Pose::identity();
   std::array<double, kPoseBlock> world;
   writeBlock(origin, world.data());
@@ -190,6 +194,7 @@ std::optional<GraphMarginals> marginalsOf(const GraphState& graph, const PoseGra
               SharedErrors::Zero());
   }
   for (const PointInformation& point : points) addTo(poses, point);
+  if (graph.outer.is_aligned) graph.outer.addTo(poses, frame, [&](int i) { return graph.nodes[i].block.data(); });
   if (!poses.solve()) return std::nullopt;
   GraphMarginals result;
   for (int i = 0; i < graph.nodeCount(); ++i) {

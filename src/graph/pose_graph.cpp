@@ -5,13 +5,9 @@
 #include "semantic_mht_slam/common/dense_solvers.h"
 #include "semantic_mht_slam/common/state_archive.h"
 
-#include "deadline.h"
-#include "graph_archive.h"
-#include "hierarchy.h"
-#include "loop_review.h"
-#include "marginals.h"
+#include "outer_alignment.h"
 #include "pose_graph_checks.h"
-#include "subgraph.h"
+#include "pose_graph_impl.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -22,40 +18,6 @@ constexpr int kRepairIterations = 1;     // an interpolated piece is so near its
 constexpr double kWindowShare = 0.5;     // of a time budget, so that loop closures get the rest
 
 }  // namespace
-
-class PoseGraph::Impl {
- public:
-  explicit Impl(const PoseGraphConfig& config) : config_(config), review_(config_), hierarchy_(config_) {}
-
-  int addNode(const PoseNode& node);
-  int addLoopClosure(const LoopConstraint& loop);
-  void removeLoopClosure(int loop);
-  void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
-  void regroup(std::vector<std::vector<std::int64_t>> groups);
-  std::vector<LoopDecision> decide();
-  PoseGraphUpdate optimize();
-  PoseGraphUpdate optimizeFully();
-  Subgraph whole(GraphState& graph) const { return {graph, range(0, graph.nodeCount()), Surroundings::kHeld, config_}; }
-  std::optional<std::vector<NodeMarginal>> coarseMarginals() const { return hierarchy_.marginals(graph_); }
-  const PoseGraphConfig& config() const { return config_; }
-  LoopDecision decision(int loop) const;
-  void transfer(StateArchive& archive, const std::vector<PoseNode>& expected);
-
-  mutable GraphState graph_;  // lent to Ceres, whose interface takes mutable addresses also for evaluation
-
- private:
-  bool solveGlobally(const Deadline& deadline, PoseGraphUpdate& update);
-  void closeLoops(const Deadline& deadline, PoseGraphUpdate& update);
-  bool solveWindow(const std::vector<int>& nodes, int iterations, double max_seconds, PoseGraphUpdate& update);
-  std::vector<LoopDecision> takeChanges();
-
-  PoseGraphConfig config_;
-  LoopReview review_;
-  Hierarchy hierarchy_;
-  int in_hierarchy_ = 0;
-  std::vector<std::optional<LoopState>> reported_;
-  std::vector<OdometryStep> odometry_;
-};
 
 int PoseGraph::Impl::addNode(const PoseNode& node) {
   const int index = graph_.nodeCount();
@@ -96,6 +58,27 @@ void PoseGraph::Impl::addPrior(int node, const Pose& T_world_node, const PoseCov
   graph_.addPrior(node, T_world_node, cov);
 }
 
+void PoseGraph::Impl::addPosition(const OuterPosition& position) {
+  require(position.node >= 0 && position.node < graph_.nodeCount(), "a position is of a node that exists");
+  require(position.in_node_m.allFinite() && position.measured_m.allFinite(), "a position is not finite");
+  require(isCovariance(position.cov_m2), "a position's covariance is not positive definite");
+  add(position, graph_.outer);
+}
+
+/// Looks whether the positions determine the frame in which they are.
+void PoseGraph::Impl::alignOuter() {
+  OuterFrame& outer = graph_.outer;
+  if (outer.is_aligned || outer.factors.empty()) return;
+  std::vector<PointPair> pairs;
+  for (const auto& [position, cost] : outer.factors) {
+    pairs.push_back({graph_.nodes[position.node].pose() * position.in_node_m, position.measured_m, position.cov_m2});
+  }
+  const std::optional<Pose> T_outer_world = alignOuterFrame(pairs);
+  if (!T_outer_world) return;
+  writeBlock(*T_outer_world, outer.block.data());
+  outer.is_aligned = true;
+}
+
 void PoseGraph::Impl::regroup(std::vector<std::vector<std::int64_t>> groups) {
   for (auto& group : groups) std::sort(group.begin(), group.end());
   check(groups, graph_);
@@ -107,6 +90,11 @@ void PoseGraph::Impl::transfer(StateArchive& archive, const std::vector<PoseNode
   archive(hierarchy_, in_hierarchy_, reported_);
   archive.require(hierarchy_.fits(graph_, in_hierarchy_), "a coarse graph of other nodes than there are");
   archive.require(reported_.size() <= graph_.loops.size(), "more loop closures told than there are");
+}
+
+void PoseGraph::Impl::transferPositions(StateArchive& archive) {
+  graph_.outer.transfer(archive, graph_.nodeCount());
+  if (archive.isReading()) hierarchy_.takePositionsAsKnown(graph_);
 }
 
 /// True if the solution was not cut short.
@@ -144,6 +132,7 @@ PoseGraphUpdate PoseGraph::Impl::optimize() {
   PoseGraphUpdate update;
   const int count = graph_.nodeCount();
   if (count == 0) return update;
+  alignOuter();
   solveWindow(range(std::max(0, count - config_.window_nodes), count), config_.window_iterations,
               deadline.left_s(kWindowShare), update);
   hierarchy_.synchronize(graph_);
@@ -235,6 +224,9 @@ void PoseGraph::removeLoopClosure(int loop) {
 void PoseGraph::addPrior(int node, const Pose& T_world_node, const PoseCov& cov) {
   impl_->addPrior(node, T_world_node, cov);
 }
+void PoseGraph::addPosition(const OuterPosition& position) {
+  impl_->addPosition(position);
+}
 void PoseGraph::regroup(const std::vector<std::vector<std::int64_t>>& groups) {
   impl_->regroup(groups);
 }
@@ -251,48 +243,10 @@ void PoseGraph::transfer(StateArchive& archive, const std::vector<PoseNode>& exp
   if (archive.isReading() && nodes() > 0) throw std::logic_error("PoseGraph: a state is read into an empty graph");
   impl_->transfer(archive, expected);
 }
-PoseNode PoseGraph::node(int index) const {
-  return impl_->graph_.node(index);
-}
-int PoseGraph::nodes() const {
-  return impl_->graph_.nodeCount();
-}
-
-std::vector<Pose> PoseGraph::poses() const {
-  std::vector<Pose> result;
-  for (const NodeState& node : impl_->graph_.nodes) result.push_back(node.pose());
-  return result;
-}
-
-Pose PoseGraph::pose(int node) const {
-  require(node >= 0 && node < nodes(), "there is no such node");
-  return impl_->graph_.nodes[node].pose();
-}
-
-std::optional<Eigen::Vector3d> PoseGraph::landmark(std::int64_t id) const {
-  const auto found = impl_->graph_.landmarks.find(impl_->graph_.keptNumber(id));
-  if (found == impl_->graph_.landmarks.end()) return std::nullopt;
-  return impl_->graph_.landmarkInWorld(found->second);
-}
-
-std::vector<LoopDecision> PoseGraph::loopDecisions() const {
-  std::vector<LoopDecision> result;
-  for (int i = 0; i < impl_->graph_.loopCount(); ++i) result.push_back(impl_->decision(i));
-  return result;
-}
-
-double PoseGraph::cost() const {
-  return nodes() == 0 ? 0.0 : impl_->whole(impl_->graph_).cost();
-}
-
-std::optional<GraphMarginals> PoseGraph::marginals() const {
-  return marginalsOf(impl_->graph_, impl_->config());
-}
-std::optional<std::vector<NodeMarginal>> PoseGraph::coarseMarginals() const {
-  return impl_->coarseMarginals();
-}
-std::int64_t PoseGraph::keptNumber(std::int64_t id) const {
-  return impl_->graph_.keptNumber(id);
+void PoseGraph::transferPositions(StateArchive& archive) {
+  if (archive.isReading() && positions() > 0)
+    throw std::logic_error("PoseGraph: positions are read where there are some");
+  impl_->transferPositions(archive);
 }
 
 }  // namespace semantic_mht_slam

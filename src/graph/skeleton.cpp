@@ -101,17 +101,22 @@ void Skeleton::setRobust(int index, bool is_robust) {
   setActive(index, true);
 }
 
-std::optional<std::vector<NodeMarginal>> Skeleton::marginals() const {
+std::optional<std::vector<NodeMarginal>> Skeleton::marginals(const OuterFrame* outer) const {
   std::vector<std::vector<int>> cliques;
   for (const Link& link : links_) {
     if (link.id != nullptr) cliques.push_back({link.from, link.to});
   }
-  PoseInformation poses(hubs(), cliques);
+  const int frame = hubs();  // behind them, in the order of the poses
+  if (outer != nullptr) {
+    for (const OuterFrame::Factor& factor : outer->factors) cliques.push_back({factor.position.node, frame});
+  }
+  PoseInformation poses(outer != nullptr ? frame + 1 : frame, cliques);
   for (const Link& link : links_) {
     if (link.id == nullptr) continue;
     poses.add(*link.cost, link.is_robust ? &loss_ : nullptr, link.from, block(link.from), link.to, block(link.to),
               link.shared_errors);
   }
+  if (outer != nullptr) outer->addTo(poses, frame, [this](int hub) { return block(hub); });
   if (!poses.solve()) return std::nullopt;
   std::vector<NodeMarginal> result;
   for (int hub = 0; hub < hubs(); ++hub) {
@@ -121,8 +126,9 @@ std::optional<std::vector<NodeMarginal>> Skeleton::marginals() const {
   return result;
 }
 
-Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
+Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds, OuterFrame* outer) {
   const auto backup = blocks_;
+  if (outer != nullptr) outer->addTo(problem_, [this](int hub) { return block(hub); });
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   // Half the time of CHOLMOD on a few hundred hubs (docs/decisions.md).
@@ -139,11 +145,15 @@ Skeleton::Outcome Skeleton::optimize(int max_iterations, double max_seconds) {
   if (max_seconds > 0.0) options.max_solver_time_in_seconds = max_seconds;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem_, &summary);
+  if (outer != nullptr) problem_.RemoveParameterBlock(outer->block.data());  // with all that hangs on it
   Outcome outcome;
   outcome.iterations = iterationsOf(summary);
   outcome.converged = summary.termination_type == ceres::CONVERGENCE || summary.termination_type == ceres::USER_SUCCESS;
   outcome.out_of_time = summary.termination_type == ceres::NO_CONVERGENCE && outcome.iterations < max_iterations;
   bool is_finite = std::isfinite(summary.final_cost);
+  if (outer != nullptr) {
+    for (const double value : outer->block) is_finite = is_finite && std::isfinite(value);
+  }
   for (const auto& block : blocks_) {
     for (const double value : block) is_finite = is_finite && std::isfinite(value);
   }

@@ -14,6 +14,7 @@
 
 #include "ceres_manifold.h"
 #include "cost_functions.h"
+#include "outer_frame.h"
 
 namespace semantic_mht_slam {
 
@@ -46,8 +47,9 @@ class Skeleton {
   /// Mahalanobis distance squared of a link from the estimate.
   double mahalanobisSq(int link) const;
 
-  /// How far the hubs may be off by the links that are active; empty if they are not determined.
-  std::optional<std::vector<NodeMarginal>> marginals() const;
+  /// How far the hubs may be off by the links that are active and the positions of an outer frame, if there is one,
+  /// whose nodes are the hubs; empty if they are not determined.
+  std::optional<std::vector<NodeMarginal>> marginals(const OuterFrame* outer) const;
 
   struct Outcome {
     std::string failure;  ///< empty, or why nothing was changed
@@ -55,7 +57,8 @@ class Skeleton {
     bool converged = false;
     bool out_of_time = false;  ///< stopped by the clock
   };
-  Outcome optimize(int max_iterations, double max_seconds);
+  /// An outer frame takes part, and is moved, if there is one.
+  Outcome optimize(int max_iterations, double max_seconds, OuterFrame* outer);
 
   /// Hubs and links with the order in which the solver sees them; into an empty skeleton, or out of one.
   void transfer(StateArchive& archive);

@@ -71,6 +71,14 @@ Subgraph::Subgraph(GraphState& graph, std::vector<int> nodes, Surroundings surro
       if (landmarks_.count(id) == 0) addLandmark(id);
     }
   }
+  addPositions();
+}
+
+/// Only where everything can move: positions that the others contradict would but bend a few nodes.
+void Subgraph::addPositions() {
+  const bool is_whole = surroundings_ == Surroundings::kHeld && nodes_.size() == graph_.nodes.size();
+  has_positions_ = is_whole && graph_.outer.is_aligned;
+  if (has_positions_) graph_.outer.addTo(problem_, [this](int node) { return graph_.nodes[node].block.data(); });
 }
 
 bool Subgraph::isInside(int node) const {
@@ -167,6 +175,7 @@ std::vector<double> Subgraph::snapshot() const {
     const auto& block = graph_.nodes[node].block;
     values.insert(values.end(), block.begin(), block.end());
   }
+  if (has_positions_) values.insert(values.end(), graph_.outer.block.begin(), graph_.outer.block.end());
   return values;
 }
 
@@ -176,6 +185,7 @@ void Subgraph::restore(const std::vector<double>& backup) {
     std::copy_n(value, kPoseBlock, graph_.nodes[node].block.begin());
     value += kPoseBlock;
   }
+  if (has_positions_) std::copy_n(value, kPoseBlock, graph_.outer.block.begin());
 }
 
 /// Landmarks are kept in the frame of the node that saw them first.

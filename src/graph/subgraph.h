@@ -52,6 +52,7 @@ class Subgraph {
   void addPose(int node);
   void addNodeFactors(int node);
   void addLandmark(std::int64_t id);
+  void addPositions();
   void addHeldSightings(const LandmarkState& landmark, const Eigen::Vector3d& seen_inside_m, double* block);
   void add(ceres::CostFunction* cost, ceres::LossFunction* loss, double* from, double* to);
   Eigen::MatrixXd sharedGradient(int columns) const;
@@ -70,6 +71,7 @@ class Subgraph {
   ceres::CauchyLoss landmark_loss_;
   PoseManifold manifold_;
   std::deque<PointPriorCost> held_;  ///< what sightings from held nodes say, one a landmark
+  bool has_positions_ = false;
   ceres::Problem problem_;
 };
 

@@ -5,6 +5,7 @@
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/io/calibration_file.h"
 #include "semantic_mht_slam/io/existing_path.h"
+#include "semantic_mht_slam/io/fixes_file.h"
 #include "semantic_mht_slam/io/objects_file.h"
 #include "semantic_mht_slam/io/text_file.h"
 #include "semantic_mht_slam/io/trajectory_file.h"
@@ -60,6 +61,11 @@ Dataset readDataset(const DatasetFiles& files, const ClassTable& classes) {
     ObjectsFile objects = readObjects(locate(files.folder, files.objects), classes, dataset.frames());
     dataset.detections = std::move(objects.detections);
     dataset.notice = std::move(objects.notice);
+  }
+  if (!files.fixes.empty()) {
+    FixesFile fixes = readFixes(locate(files.folder, files.fixes));
+    dataset.fixes = std::move(fixes.fixes);
+    dataset.fixes_notice = std::move(fixes.notice);
   }
   const std::string truth = (fs::path(files.folder) / "poses.txt").string();
   if (mayExist(truth)) dataset.T_map_base = readPoses(truth, dataset.T_cam0_base, dataset.frames());

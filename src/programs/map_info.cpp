@@ -8,6 +8,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "semantic_mht_slam/app/landmark_files.h"
 #include "semantic_mht_slam/app/system_config.h"
 #include "semantic_mht_slam/bags/map_file.h"
 #include "semantic_mht_slam/bags/readable_map.h"
@@ -26,11 +27,12 @@ namespace {
 
 constexpr const char* kUsage =
     "Says what is in a map file, and writes it as files that others read.\n"
-    "  map_info FILE [--csv LANDMARKS.csv] [--tum TRAJECTORY.tum] [--html PAGE.html]\n";
+    "  map_info FILE [--csv LANDMARKS.csv] [--geojson LANDMARKS.geojson] [--tum TRAJECTORY.tum] [--html PAGE.html]\n";
 
 struct Arguments {
   std::string file;
   std::string csv;
+  std::string geojson;
   std::string tum;
   std::string html;
   std::string config = packageConfigFile("kitti.yaml");
@@ -43,6 +45,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
   auto add = options.add_options();
   add("file", po::value(&arguments.file)->value_name("FILE"), "the map; the option's name may be left out");
   add("csv", po::value(&arguments.csv)->value_name("FILE"), "writes the landmarks (id,class,x,y,z,...)");
+  add("geojson", po::value(&arguments.geojson)->value_name("FILE"),
+      "writes the landmarks in longitude and latitude, if fixes said where the map is, else in metres");
   add("tum", po::value(&arguments.tum)->value_name("FILE"), "writes the trajectory (stamp x y z qx qy qz qw)");
   add("html", po::value(&arguments.html)->value_name("FILE"), "writes a page with a drawing of the map");
   add("config", po::value(&arguments.config)->value_name("FILE"), "parameters that the map was made with");
@@ -60,6 +64,7 @@ struct MapContent {
   ClassTable classes;
   std::vector<MixtureLandmark> landmarks;
   std::vector<StampedPose> trajectory;
+  std::optional<MapOrigin> origin;  ///< if fixes determined it
 };
 
 MapContent readContent(const Arguments& arguments) {
@@ -76,6 +81,7 @@ MapContent readContent(const Arguments& arguments) {
       std::make_unique<Slam>(slam_config, content.classes, stateOf(std::move(map), slam_config, content.classes));
   content.landmarks = landmarksOf(*content.slam);
   content.trajectory = trajectoryOf(*content.slam);
+  if (const auto reference = geoReferenceOf(*content.slam)) content.origin = originOf(*reference);
   return content;
 }
 
@@ -112,6 +118,11 @@ std::string summary(const MapContent& content) {
   text += "closures   " + std::to_string(holding) + " that hold, of " + std::to_string(map.closures().size()) + "\n";
   text += "landmarks  " + std::to_string(content.landmarks.size()) + ", " + formatFixed(high_m.x() - low_m.x(), 1) +
           " x " + formatFixed(high_m.y() - low_m.y(), 1) + " m\n";
+  if (content.origin) {
+    text += "origin     " + formatFixed(content.origin->latitude_deg, 7) + " " +
+            formatFixed(content.origin->longitude_deg, 7) + ", x axis " + formatFixed(content.origin->heading_rad, 4) +
+            " rad from east\n";
+  }
   for (const auto& [name, count] : of_class) text += "  " + name + " " + std::to_string(count) + "\n";
   return text;
 }
@@ -148,6 +159,9 @@ int run(int argc, char** argv) {
   const std::string text = summary(content);
   std::fputs(text.c_str(), stdout);
   if (!arguments.csv.empty()) writeFileAtomically(arguments.csv, landmarkTable(content.landmarks, content.classes));
+  if (!arguments.geojson.empty()) {
+    writeFileAtomically(arguments.geojson, landmarksGeoJson(content.landmarks, content.classes, content.origin));
+  }
   if (!arguments.tum.empty()) writeFileAtomically(arguments.tum, formatTumTrajectory(content.trajectory));
   const std::string title = std::filesystem::path(arguments.file).filename().string();
   if (!arguments.html.empty()) writeFileAtomically(arguments.html, page(content, text, title));

@@ -29,8 +29,8 @@ namespace {
 
 constexpr const char* kUsage =
     "Runs the system on a data-set folder or a bag, as fast as it goes.\n"
-    "  slam_offline --dataset DIR [--objects FILE] [--odometry FILE] --output DIR\n"
-    "  slam_offline --bag FILE [--odometry-topic TOPIC] [--objects-topic TOPIC] --output DIR\n"
+    "  slam_offline --dataset DIR [--objects FILE] [--odometry FILE] [--fixes FILE] --output DIR\n"
+    "  slam_offline --bag FILE [--odometry-topic TOPIC] [--objects-topic TOPIC] [--fixes-topic TOPIC] --output DIR\n"
     "  slam_offline --print-config [--config FILE] [--set KEY=VALUE ...]\n"
     "With --load MAP it goes on with the map of an earlier run (DIR/map.bag).\n";
 
@@ -61,6 +61,10 @@ po::options_description makeOptions(Arguments& arguments) {
       "odometry of the bag; default: /odometry");
   add("objects-topic", po::value(&arguments.topics.objects_topic)->value_name("TOPIC"),
       "objects of the bag; default: /objects");
+  add("fixes", po::value(&arguments.dataset.fixes)->value_name("FILE"),
+      "positions by satellites, CSV (docs/gnss.md); default: none");
+  add("fixes-topic", po::value(&arguments.topics.fixes_topic)->value_name("TOPIC"),
+      "the same of the bag, sensor_msgs/NavSatFix; default: /fix, if it is there");
   add("load", po::value(&arguments.map)->value_name("MAP"), "map file to go on with");
   add("method", po::value(&arguments.method)->value_name("NAME"), "the same as --set method=NAME");
   add("seed", po::value(&arguments.seed)->value_name("N"), "the same as --set seed=N");
@@ -81,6 +85,10 @@ void requireInputAndOutput(const Arguments& arguments) {
   if (arguments.bag.empty() == arguments.dataset.folder.empty())
     throw InputError("one of --dataset and --bag is needed");
   if (arguments.output.empty()) throw InputError("--output is needed");
+  if (!arguments.bag.empty() && !arguments.dataset.fixes.empty())
+    throw InputError("--fixes goes with --dataset; fixes of a bag are on a topic of it (--fixes-topic)");
+  if (arguments.bag.empty() && !arguments.topics.fixes_topic.empty())
+    throw InputError("--fixes-topic goes with --bag; fixes beside a data set are in a file (--fixes)");
 }
 
 SystemConfig loadConfig(const Arguments& arguments) {
@@ -95,6 +103,7 @@ Recording loadRecording(const Arguments& arguments, const ClassTable& classes, c
   if (!arguments.bag.empty()) return readBag(arguments.bag, classes, config.node, arguments.topics);
   Dataset dataset = readDataset(arguments.dataset, classes);
   printNotice("slam_offline", dataset.notice);
+  printNotice("slam_offline", dataset.fixes_notice);
   return toRecording(std::move(dataset));
 }
 
@@ -122,6 +131,14 @@ void printSummary(const Recording& recording, const RunResult& result, const std
   }
   std::printf("%s; results in %s\n", describeSessions(result.sessions).c_str(), output.c_str());
   for (const std::string& line : droppedInput(result.counters, recording.refused, recording.names)) {
+    std::printf("  %s\n", line.c_str());
+  }
+  if (result.fixes.received > 0) {
+    std::printf("  %zu of %zu fixes used for keyframes; %s\n", result.fixes.used, result.fixes.received,
+                result.geo_reference ? "the map has its place on the Earth"
+                                     : "they don't determine where the map is, and have no effect");
+  }
+  for (const std::string& line : droppedFixes(result.fixes, recording.refused, recording.names)) {
     std::printf("  %s\n", line.c_str());
   }
 }

@@ -51,6 +51,11 @@ void diagnoseEstimator(const NodeStatus& now, const NodeStatus& before, Diagnost
   status.add("landmarks", estimator.landmarks);
   status.add("submaps", estimator.submaps);
   status.add("loops", estimator.loops);
+  if (estimator.fixes.received > 0) {
+    status.add("fixes received", estimator.fixes.received);
+    status.add("fixes used for keyframes", estimator.fixes.used);
+    status.add("map has its place on the Earth", estimator.is_map_placed ? "yes" : "not yet");
+  }
   status.add("failed solutions of the pose graph", estimator.graph.failures);
   status.add("maps begun", estimator.resets + 1);
   status.add("initial poses refused", estimator.initial_poses_refused);

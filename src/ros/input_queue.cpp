@@ -9,6 +9,10 @@ bool InputQueue::isObjects(const Waiting& waiting) {
   return std::holds_alternative<SemanticObjectArrayConstPtr>(waiting.message);
 }
 
+bool InputQueue::isFix(const Waiting& waiting) {
+  return std::holds_alternative<sensor_msgs::NavSatFixConstPtr>(waiting.message);
+}
+
 void InputQueue::push(InputMessage message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -20,9 +24,11 @@ void InputQueue::push(InputMessage message) {
 }
 
 void InputQueue::makeRoom() {
-  const auto objects = std::find_if(messages_.begin(), messages_.end(), isObjects);
-  ++(objects == messages_.end() ? dropped_odometry_ : dropped_objects_);
-  messages_.erase(objects == messages_.end() ? messages_.begin() : objects);
+  auto dropped = std::find_if(messages_.begin(), messages_.end(), isObjects);
+  if (dropped == messages_.end()) dropped = std::find_if(messages_.begin(), messages_.end(), isFix);
+  if (dropped == messages_.end()) dropped = messages_.begin();
+  ++(isObjects(*dropped) ? dropped_objects_ : isFix(*dropped) ? dropped_fixes_ : dropped_odometry_);
+  messages_.erase(dropped);
 }
 
 void InputQueue::dropOverdue() {
@@ -80,6 +86,11 @@ std::size_t InputQueue::droppedOdometry() const {
 std::size_t InputQueue::droppedObjects() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return dropped_objects_;
+}
+
+std::size_t InputQueue::droppedFixes() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return dropped_fixes_;
 }
 
 }  // namespace semantic_mht_slam

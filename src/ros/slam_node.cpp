@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "semantic_mht_slam/bags/conversions.h"
+#include "semantic_mht_slam/bags/fix_gate.h"
 #include "semantic_mht_slam/common/length.h"
 #include "semantic_mht_slam/ros/parameters.h"
 #include "semantic_mht_slam/ros/starting_map.h"
@@ -56,6 +57,7 @@ SlamNode::~SlamNode() {
   queue_.close();
   odometry_subscriber_.shutdown();
   objects_subscriber_.shutdown();
+  fixes_subscriber_.shutdown();
   initial_pose_subscriber_.shutdown();
   services_.clear();
   service_spinner_.stop();
@@ -82,9 +84,11 @@ void SlamNode::work() {
 
 void SlamNode::handleSafely(const InputMessage& message) {
   const auto* odometry = std::get_if<nav_msgs::OdometryConstPtr>(&message);
+  const bool is_objects = std::holds_alternative<SemanticObjectArrayConstPtr>(message);
+  const char* kind = odometry != nullptr ? "odometry" : is_objects ? "objects" : "fix";
   if (input_failures_.status().isLasting()) {
-    if (odometry == nullptr) ++estimator_.objects_while_failing;
-  } else if (input_failures_.run(odometry != nullptr ? "odometry" : "objects", [&] { handleTimed(message); })) {
+    if (is_objects) ++estimator_.objects_while_failing;
+  } else if (input_failures_.run(kind, [&] { handleTimed(message); })) {
     return;
   }
   if (odometry == nullptr || !isLocated(slam_->mode())) return;
@@ -118,7 +122,12 @@ void SlamNode::warnOfDrops() {
     warnings_.warn(std::to_string(objects) +
                    " messages of objects dropped, the estimator is too slow (node/max_delay)");
   }
-  const InputNames names{odometry_subscriber_.getTopic(), objects_subscriber_.getTopic(), config_.node.base_frame};
+  if (const std::size_t fixes = queue_.droppedFixes()) {
+    warnings_.warn(std::to_string(fixes) + " fixes dropped, the queue is full (node/queue_size)");
+  }
+  const InputNames names{odometry_subscriber_.getTopic(), objects_subscriber_.getTopic(), config_.node.base_frame,
+                         fixes_subscriber_.getTopic()};
+  for (const std::string& line : droppedFixes(estimator_.fixes, estimator_.refused, names)) warnings_.warn(line);
   for (const std::string& line : droppedInput(estimator_.counters, estimator_.refused, names)) warnings_.warn(line);
   for (const FailureStatus& failures : {input_failures_.status(), other_failures_.status()}) {
     if (failures.count > 0)
@@ -208,6 +217,10 @@ void SlamNode::handle(const SemanticObjectArray& message) {
   if (!gate_.isHolding() && !is_loaded_) retryObjects();  // a session that may begin comes first
 }
 
+void SlamNode::handle(const sensor_msgs::NavSatFix& message) {
+  if (const auto fix = toFix(message, sensors_, config_.node, estimator_.refused)) slam_->addFix(*fix);
+}
+
 void SlamNode::retryObjects() {
   while (auto frame = objects_gate_.next(gate_, latestStamp(), ros::WallTime::now().toSec(), estimator_.refused)) {
     plausibility_.add(*frame);
@@ -218,6 +231,8 @@ void SlamNode::retryObjects() {
 
 void SlamNode::noteStatus() {
   estimator_.counters = slam_->parts().assembler.counters();
+  estimator_.fixes = slam_->parts().fixes.counters();
+  estimator_.is_map_placed = geoReferenceOf(*slam_).has_value();
   estimator_.mode = is_localization_wanted_ ? "localization" : "mapping";
   estimator_.is_lost = !isLocated(slam_->mode());
   if (estimator_.is_lost) estimator_.mode += ", lost";

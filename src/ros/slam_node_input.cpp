@@ -29,6 +29,9 @@ void SlamNode::subscribe() {
                                                                               ros::VoidConstPtr(), at_once);
   objects_subscriber_ = handle_.subscribe<SemanticObjectArray, ObjectsEvent>("objects", kSubscriberQueue, on_objects,
                                                                              ros::VoidConstPtr(), at_once);
+  fixes_subscriber_ = handle_.subscribe<sensor_msgs::NavSatFix>(
+      "fix", kSubscriberQueue, [this](const sensor_msgs::NavSatFixConstPtr& message) { receive(message); },
+      ros::VoidConstPtr(), at_once);
   ros::NodeHandle service_handle(handle_);
   service_handle.setCallbackQueue(&service_queue_);
   initial_pose_subscriber_ = service_handle.subscribe<geometry_msgs::PoseWithCovarianceStamped>(

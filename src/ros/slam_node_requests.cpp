@@ -96,6 +96,8 @@ bool SlamNode::saveResults(SaveResults::Request& request, SaveResults::Response&
       auto lock = lockCaughtUp();
       const TrajectoryRecord record = trajectoryRecordOf(*slam_);
       const std::vector<MixtureLandmark> landmarks = landmarksOf(*slam_);
+      const std::optional<GeoReference> reference = geoReferenceOf(*slam_);
+      if (!origin && reference) origin = originOf(*reference);
       lock.unlock();
       const std::vector<StampedPose> trajectory = trajectoryOf(record);
       semantic_mht_slam::saveResults(folder, trajectory, landmarks, classes_, origin);

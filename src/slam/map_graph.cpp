@@ -77,6 +77,10 @@ bool MapGraph::beginsSession(KeyframeId keyframe) const {
   return keyframe != KeyframeId(0) && node(keyframe).odometry_cov == poseCov(kSessionStddev_m, kSessionStddev_rad);
 }
 
+void MapGraph::add(const std::vector<OuterPosition>& positions) {
+  for (const OuterPosition& position : positions) graph_.addPosition(position);
+}
+
 void MapGraph::removeClosure(ClosureId closure) {
   const auto factor = std::find(closure_of_factor_.begin(), closure_of_factor_.end(), closure);
   if (factor == closure_of_factor_.end()) throw std::invalid_argument("MapGraph: no closure of this graph");

@@ -9,6 +9,8 @@
 namespace semantic_mht_slam {
 namespace {
 
+constexpr double kMaxPause_s = 60.0;
+
 MapGauge gaugeOf(const SlamParts& parts) {
   return {parts.start_cov, parts.mapper ? parts.mapper->scaleStddev() : 0.0};
 }
@@ -70,6 +72,18 @@ void noteStart(SlamParts& parts) {
                 : UncertainPose{sample.T_world_base, gaugeCov()};
   }
   if (pose) parts.start_cov = pose->total();
+}
+
+bool goesOn(const Slam& slam, const StampedPose& next) {
+  const std::optional<StampedPose> last = slam.parts().sessions.latestOdometry();
+  if (!last || secondsFromStamp(next.stamp - last->stamp) > kMaxPause_s) return false;
+  return slam.parts().continuity.goesOn(next);
+}
+
+std::optional<StampedPose> latestPoseOf(const Slam& slam) {
+  const std::optional<StampedPose> odometry = slam.parts().sessions.latestOdometry();
+  if (!odometry) return std::nullopt;
+  return StampedPose{odometry->stamp, slam.T_map_odom() * odometry->T_world_base};
 }
 
 std::optional<FixedAxesCov> latestCovOf(const Slam& slam) {

@@ -6,6 +6,11 @@
 #include "semantic_mht_slam/common/state_checks.h"
 
 namespace semantic_mht_slam {
+namespace {
+
+constexpr double kStandingStep_m = 0.05;  // of a stand-still, of which only the ends are kept
+
+}  // namespace
 
 void Sessions::add(const StampedPose& T_odom_base, bool is_standing) {
   const bool has_begun = odometry_.size() > sessions_.back().first_odometry + 1;
@@ -45,6 +50,21 @@ std::vector<StampedPose> Sessions::odometryAfter(Stamp stamp) const {
   const auto first = std::upper_bound(begin, odometry_.end(), stamp,
                                       [](Stamp earlier, const StampedPose& pose) { return earlier < pose.stamp; });
   return {first, odometry_.end()};
+}
+
+std::optional<Pose> Sessions::odometryAt(Stamp stamp, double max_gap_s) const {
+  const auto begin = odometry_.begin() + sessions_.back().first_odometry;
+  const auto after = std::lower_bound(begin, odometry_.end(), stamp,
+                                      [](const StampedPose& pose, Stamp earlier) { return pose.stamp < earlier; });
+  if (after == odometry_.end()) return std::nullopt;
+  if (after->stamp == stamp) return after->T_world_base;
+  if (after == begin) return std::nullopt;
+  const StampedPose& before = *std::prev(after);
+  const Stamp gap = after->stamp - before.stamp;
+  const double step_m = (after->T_world_base.translation_m - before.T_world_base.translation_m).norm();
+  if (gap > stampFromSeconds(max_gap_s) && step_m > kStandingStep_m) return std::nullopt;
+  const double fraction = static_cast<double>(stamp - before.stamp) / static_cast<double>(gap);
+  return interpolate(before.T_world_base, after->T_world_base, fraction);
 }
 
 bool Sessions::isNewestFix(const Map& map, KeyframeId keyframe) const {

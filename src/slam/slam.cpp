@@ -28,8 +28,6 @@ constexpr double kBetweenSessions_m = 1000.0;
 constexpr double kFollowed = 1.0 / 3.0;
 constexpr double kSamePlace = 1.0 / 6.0;
 
-constexpr double kMaxPause_s = 60.0;
-
 /// A localizer that begins where the odometry is by its present correction.
 Localizer localizerHere(const Pose& T_map_odom, const SlamConfig& fitted) {
   Localizer localizer(fitted.localization);
@@ -67,6 +65,7 @@ SlamParts makeParts(const SlamConfig& config, const ClassTable& classes) {
                   {},
                   {}};
   parts.odometry = OdometryLearning(config.mapper.odometry).model();
+  parts.fixes = GnssFixes(config.gnss);
   fitParts(config, classes, parts);
   return parts;
 }
@@ -184,6 +183,7 @@ void Slam::endSubmap() {
   const IdRange<KeyframeId> keyframes =
       map.add(std::make_shared<const Submap>(std::move(finished.submap)), std::move(cut.keyframes));
   parts_.graph.add(map, keyframes, cut.sightings, odometry);
+  parts_.graph.add(parts_.fixes.take(map, parts_.sessions, false));
   if (keyframes.front() == KeyframeId(0)) noteStart(parts_);
   parts_.graph.settle(map);
   parts_.closer->add(map);
@@ -208,6 +208,7 @@ void Slam::endSubmap() {
 void Slam::finish() {
   endSubmap();
   if (parts_.map.keyframes().empty()) return;
+  parts_.graph.add(parts_.fixes.take(parts_.map, parts_.sessions, true));
   parts_.graph.settle(parts_.map, true);
   tieToNewestKeyframe(parts_);
 }
@@ -243,6 +244,8 @@ void Slam::beginSession(Stamp begin) {
   endSubmap();
   const auto* localizing = std::get_if<Localizing>(&parts_.mode);
   const bool is_mapping_wanted = localizing == nullptr || localizing->until_found;
+  parts_.graph.add(parts_.fixes.take(parts_.map, parts_.sessions, true));
+  parts_.fixes.beginSession(parts_.map.keyframes().nextId());
   parts_.assembler.beginSession(begin);
   parts_.continuity.clear();
   parts_.unconfirmed.reset();
@@ -272,20 +275,8 @@ TrajectoryRecord trajectoryRecordOf(const Slam& slam) {
   return slam.parts().sessions.record(slam.map());
 }
 
-bool goesOn(const Slam& slam, const StampedPose& next) {
-  const std::optional<StampedPose> last = slam.parts().sessions.latestOdometry();
-  if (!last || secondsFromStamp(next.stamp - last->stamp) > kMaxPause_s) return false;
-  return slam.parts().continuity.goesOn(next);
-}
-
 std::vector<StampedPose> trajectoryOf(const Slam& slam) {
   return trajectoryOf(trajectoryRecordOf(slam));
-}
-
-std::optional<StampedPose> latestPoseOf(const Slam& slam) {
-  const std::optional<StampedPose> odometry = slam.parts().sessions.latestOdometry();
-  if (!odometry) return std::nullopt;
-  return StampedPose{odometry->stamp, slam.T_map_odom() * odometry->T_world_base};
 }
 
 const std::vector<MapHypothesis>& hypothesesOf(const Slam& slam) {

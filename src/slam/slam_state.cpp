@@ -120,16 +120,28 @@ void transferMapper(StateArchive& archive, const SlamConfig&, SlamParts& parts) 
   parts.closer->setOdometry(parts.odometry);
 }
 
+void transferFixes(StateArchive& archive, const SlamConfig&, SlamParts& parts) {
+  parts.fixes.transfer(archive, parts.map);
+  parts.graph.transferPositions(archive);
+}
+
+/// Without any fix the state has no section of them, as that of a program that knows none.
+bool hasFixes(const SlamParts& parts) {
+  return parts.fixes.counters().received > 0;
+}
+
 /// What is written and read together, in the order in which it is read.
 struct Section {
   const char* name;
   int version;
   void (*transfer)(StateArchive& archive, const SlamConfig& config, SlamParts& parts);
+  bool (*isNeeded)(const SlamParts& parts) = nullptr;  ///< none: always
 };
 
-constexpr Section kSections[] = {{"detector", 3, transferDetector}, {"input", 6, transferInput},
-                                 {"submaps", 4, transferSubmaps},   {"keyframes", 5, transferKeyframes},
-                                 {"graph", 5, transferGraph},       {"hypotheses", 9, transferMapper}};
+constexpr Section kSections[] = {
+    {"detector", 3, transferDetector},          {"input", 6, transferInput}, {"submaps", 4, transferSubmaps},
+    {"keyframes", 5, transferKeyframes},        {"graph", 5, transferGraph}, {"hypotheses", 9, transferMapper},
+    {kFixesSection, 1, transferFixes, hasFixes}};
 
 template <class Iterator>
 Iterator findSection(Iterator begin, Iterator end, const char* name) {
@@ -145,6 +157,7 @@ void restore(SlamState& state, const KeepReading& keep_reading, const SlamConfig
   std::size_t memory = state.most_memory;
   for (const Section& section : kSections) {
     const auto found = findSection(state.sections.begin(), state.sections.end(), section.name);
+    if (found == state.sections.end()) continue;
     try {
       StateArchive archive(found->bytes, keep_reading, classes.size(), memory);
       section.transfer(archive, fitted, parts);
@@ -166,6 +179,7 @@ std::string whyUnreadable(const SlamState& state) {
   for (const Section& section : kSections) {
     const auto found = findSection(state.sections.begin(), state.sections.end(), section.name);
     const std::string name = std::string("the section '") + section.name + "'";
+    if (found == state.sections.end() && section.isNeeded != nullptr) continue;
     if (found == state.sections.end()) return name + " is missing";
     if (found->version != section.version) {
       return name + " has version " + std::to_string(found->version) + ", this program reads version " +
@@ -178,6 +192,7 @@ std::string whyUnreadable(const SlamState& state) {
 SlamState stateOf(const SlamConfig& fitted, const SlamParts& parts) {
   SlamState state;
   for (const Section& section : kSections) {
+    if (section.isNeeded != nullptr && !section.isNeeded(parts)) continue;
     StateArchive archive;
     section.transfer(archive, fitted, const_cast<SlamParts&>(parts));  // a writing archive changes nothing
     state.sections.push_back({section.name, section.version, archive.written()});

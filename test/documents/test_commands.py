@@ -36,6 +36,7 @@ class CommandsTest(unittest.TestCase):
         cls.run_line(f"simulate_drive --scenario config/scenarios/town.yaml --seed 1 --output {drive}")
         shutil.copy(drive / "odometry" / "odometry.txt", drive / "odometry" / "vo_orb.txt")
         shutil.copy(drive / "objects.csv", drive / "objects_noisy.csv")
+        (drive / "fixes.csv").write_text("time,latitude,longitude\n0.0,47.3769,8.5417\n1.0,47.37695,8.5417\n")
         os.symlink(drive, home / "DIR")
         cls.run_line(f"slam_offline --bag {drive}/drive.bag --output result")
         shutil.copy(home / "result" / "trajectory.tum", home / "truth.tum")

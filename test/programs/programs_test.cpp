@@ -132,6 +132,9 @@ TEST_F(ProgramsTest, BadOptionsAreRefused) {
   expectRefused("slam_offline", "--output '" + output_ + "'", "--dataset");
   expectRefused("slam_offline", "--dataset '" + drive_ + "'", "--output");
   expectRefused("slam_offline", offlineArguments() + "--methd ukf", "methd");
+  expectRefused("slam_offline", offlineArguments() + "--fixes-topic /fix", "--bag");
+  expectRefused("slam_offline", "--bag '" + drive_ + "/drive.bag' --fixes fixes.csv --output '" + output_ + "'",
+                "--dataset");
   expectRefused("slam_offline", offlineArguments() + "--method magic", "method = 'magic'");
   expectRefused("slam_offline", offlineArguments() + "--seed -1", "seed = '-1'");
   expectRefused("slam_offline", offlineArguments() + "--set no.such=1", "unknown key 'no.such'");
@@ -155,6 +158,10 @@ TEST_F(ProgramsTest, BadFilesAreRefused) {
   replaceIn("objects.csv", objects + "0,pole,one,2,3\n");
   expectRefused("slam_offline", offlineArguments(), "column 'x'");
   replaceIn("objects.csv", objects);
+
+  expectRefused("slam_offline", offlineArguments() + "--fixes none.csv", "none.csv");
+  replaceIn("fixes.csv", "time,latitude,longitude\n1,north,8\n");
+  expectRefused("slam_offline", offlineArguments() + "--fixes fixes.csv", "fixes.csv:2: column 'latitude'");
 
   const std::string odometry = readFile(drive_ + "/odometry/odometry.txt");
   replaceIn("odometry/odometry.txt", odometry + "1 0 0 0 0 1 0 0 0 0 1 0\n");

@@ -22,6 +22,12 @@ InputMessage objectsWithSequence(std::uint32_t sequence) {
   return SemanticObjectArrayConstPtr(message);
 }
 
+InputMessage fixWithSequence(std::uint32_t sequence) {
+  auto message = boost::make_shared<sensor_msgs::NavSatFix>();
+  message->header.seq = sequence;
+  return sensor_msgs::NavSatFixConstPtr(message);
+}
+
 constexpr std::chrono::hours kForever(1);
 
 std::uint32_t sequenceOf(const InputMessage& message) {
@@ -44,6 +50,19 @@ TEST(InputQueueTest, FullQueueDropsObjectsBeforeOdometry) {
   EXPECT_EQ(queue.droppedOdometry(), 0U);
   EXPECT_EQ(queue.droppedObjects(), 2U) << "the oldest two";
   for (const std::uint32_t i : {0U, 2U, 4U, 5U}) EXPECT_EQ(sequenceOf(*queue.pop()), i);
+}
+
+TEST(InputQueueTest, FullQueueDropsFixesAfterObjectsAndBeforeOdometry) {
+  InputQueue queue(4, kForever);
+  queue.push(odometryWithSequence(0));
+  queue.push(fixWithSequence(1));
+  queue.push(objectsWithSequence(2));
+  queue.push(fixWithSequence(3));
+  for (std::uint32_t i = 4; i < 7; ++i) queue.push(odometryWithSequence(i));
+  EXPECT_EQ(queue.droppedObjects(), 1U);
+  EXPECT_EQ(queue.droppedFixes(), 2U);
+  EXPECT_EQ(queue.droppedOdometry(), 0U);
+  for (const std::uint32_t i : {0U, 4U, 5U, 6U}) EXPECT_EQ(sequenceOf(*queue.pop()), i);
 }
 
 TEST(InputQueueTest, ObjectsThatWaitedForTooLongAreDroppedAndOdometryIsNot) {

@@ -6,6 +6,7 @@
 
 #include "semantic_mht_slam/map/landmark.h"
 #include "semantic_mht_slam/models/class_table.h"
+#include "semantic_mht_slam/slam/gnss_fixes.h"
 
 namespace semantic_mht_slam {
 
@@ -15,6 +16,9 @@ struct MapOrigin {
   double longitude_deg = 0.0;  ///< WGS 84
   double heading_rad = 0.0;    ///< of the x axis, counterclockwise from east
 };
+
+/// The same as fixes determine it.
+MapOrigin originOf(const GeoReference& reference);
 
 /// Throws InputError for what is no place on the Earth between the poles.
 void requireUsable(const MapOrigin& origin);

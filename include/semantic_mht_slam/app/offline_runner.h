@@ -45,6 +45,8 @@ struct RunResult {
   double detector_range_m = 0.0;                ///< that all lengths follow which are not set
   MovingCounts moving;                          ///< of the map that the run began with, too
   std::optional<OdometryModel> odometry_model;  ///< as it was learned; none without map
+  GnssCounters fixes;                           ///< of the recording alone
+  std::optional<GeoReference> geo_reference;    ///< where the map is on the Earth, if fixes determined it
 };
 
 /// Called now and then with the number of odometry samples done and of all.

@@ -23,6 +23,7 @@ struct DetectorFrame {
 struct Recording {
   std::vector<StampedPose> odometry;  ///< T_odom_base
   std::vector<DetectorFrame> detector_frames;
+  std::vector<GnssFix> fixes = {};        ///< by rising stamps
   std::optional<Pose> T_base_cam0;        ///< for output in the KITTI format; unknown: the base frame is used
   std::vector<StampedPose> ground_truth;  ///< T_map_base; empty if unknown
   RefusedInput refused;                   ///< what was left out when it was read

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "semantic_mht_slam/slam/frame_assembler.h"
+#include "semantic_mht_slam/slam/gnss_fixes.h"
 
 namespace semantic_mht_slam {
 
@@ -23,6 +24,9 @@ struct RefusedInput {
   std::size_t odometry_before_jump = 0;  ///< of a bag: time fell back after it, and another map began
   std::size_t objects_before_jump = 0;
   std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
+  std::size_t fixes_bad_stamps = 0;
+  std::size_t fixes_without_transform = 0;  ///< taken with the antenna where the parameters have it
+  std::string antenna_frame;                ///< the newest one of these
 };
 
 /// Class ids that the table lacks, as far as they are listed: whoever sends garbage sends many.
@@ -42,11 +46,16 @@ struct InputNames {
   std::string odometry = "odometry";
   std::string objects = "objects";
   std::string base_frame = "base_link";
+  std::string fixes = "fixes";
 };
 
 /// What was dropped of the two inputs so far, a line for each cause: the input, how many, and why. Unknown classes have
 /// a line each, as far as they are listed, and one for all others.
 std::vector<std::string> droppedInput(const InputCounters& counters, const RefusedInput& refused,
+                                      const InputNames& names);
+
+/// The same of positions by satellites.
+std::vector<std::string> droppedFixes(const GnssCounters& counters, const RefusedInput& refused,
                                       const InputNames& names);
 
 }  // namespace semantic_mht_slam

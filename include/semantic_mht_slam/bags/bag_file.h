@@ -12,6 +12,7 @@ namespace semantic_mht_slam {
 struct BagLayout {
   std::string objects_topic = "/objects";            ///< semantic_mht_slam/SemanticObjectArray
   std::string odometry_topic = "/odometry";          ///< nav_msgs/Odometry
+  std::string fixes_topic;                           ///< sensor_msgs/NavSatFix; empty: /fix, if it holds such
   std::string ground_truth_topic = "/ground_truth";  ///< nav_msgs/Path, latched, T_map_base
   std::string time_origin_topic = "/time_origin";    ///< std_msgs/Time: the bag's time of stamp 0 of the data set
   std::string sensor_frame = "velodyne";

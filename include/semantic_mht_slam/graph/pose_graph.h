@@ -60,6 +60,14 @@ struct LoopConstraint {
   bool is_certain = false;  ///< takes part whatever speaks against it, without a robust loss
 };
 
+/// Where a point of a node is in a frame beside the world: a position by satellites.
+struct OuterPosition {
+  int node = 0;                                          ///< index of a node
+  Eigen::Vector3d in_node_m = Eigen::Vector3d::Zero();   ///< the point, in the frame of the node
+  Eigen::Vector3d measured_m = Eigen::Vector3d::Zero();  ///< the same point in the outer frame
+  Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();  ///< of that measurement
+};
+
 /// Whether a loop closure takes part, and why it does not.
 enum class LoopState {
   kAccepted,
@@ -101,9 +109,9 @@ struct PoseGraphUpdate {
 };
 
 /// Pose graph of a drive (paper section III): node poses in SE(3), point landmarks in R^3; odometry with integrated
-/// covariance, landmarks relative to the nodes that saw them, loop closures, priors. Errors are whitened with the
-/// upper square root of the information; a Cauchy loss is on landmarks and loop closures, none on odometry. The first
-/// node is held.
+/// covariance, landmarks relative to the nodes that saw them, loop closures, priors, positions in an outer frame.
+/// Errors are whitened with the upper square root of the information; a Cauchy loss is on landmarks and loop closures,
+/// none on odometry. The first node is held.
 ///
 /// The time of a call does not grow with the length of the drive as that of a batch solution does: the newest nodes
 /// are optimised with everything they see while the rest is held; a new loop closure is solved on a skeleton that has
@@ -133,6 +141,18 @@ class PoseGraph {
 
   /// Adds absolute knowledge of a pose; `cov` as in `LoopConstraint` with the world as `from`.
   void addPrior(int node, const Pose& T_world_node, const PoseCov& cov);
+
+  /// Adds a position in the outer frame, whose place in the world nobody knows: its z axis is vertical within a few
+  /// degrees as the world's is. T_outer_world is estimated with the nodes as soon as most of the positions agree on it
+  /// and the way between them is long enough for their noise; until then, they have no effect. A Cauchy loss is on
+  /// them. They act on everything at once, not on the newest nodes alone.
+  void addPosition(const OuterPosition& position);
+
+  /// Positions added so far.
+  std::size_t positions() const;
+
+  /// As it is estimated; empty until it is determined.
+  std::optional<Pose> T_outer_world() const;
 
   /// From now on all numbers of a group mean one landmark, in every call, and no other number does: what was one before
   /// is split into the groups. Sightings keep their own number. Acts like a loop closure: the next `optimize` brings
@@ -186,6 +206,9 @@ class PoseGraph {
   /// also if the state was written with other sizes of windows or chunks. Odometry of nodes that is as `expected` is
   /// not written; whoever reads must expect the same.
   void transfer(StateArchive& archive, const std::vector<PoseNode>& expected);
+
+  /// The same of the positions and the outer frame, after the nodes.
+  void transferPositions(StateArchive& archive);
 
  private:
   class Impl;

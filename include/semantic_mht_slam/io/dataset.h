@@ -8,6 +8,7 @@
 #include "semantic_mht_slam/common/stamp.h"
 #include "semantic_mht_slam/models/class_table.h"
 #include "semantic_mht_slam/models/detection.h"
+#include "semantic_mht_slam/models/gnss_fix.h"
 
 namespace semantic_mht_slam {
 
@@ -20,6 +21,8 @@ struct Dataset {
   std::vector<Detections> detections;
   std::optional<std::vector<Pose>> T_map_base;  ///< ground truth
   std::string notice;                           ///< of what was ignored in the objects file; empty: nothing
+  std::vector<GnssFix> fixes = {};              ///< by rising stamps
+  std::string fixes_notice = {};                ///< as `notice`, of the file of fixes
 
   std::size_t frames() const { return stamps.size(); }
 };
@@ -29,9 +32,10 @@ struct DatasetFiles {
   std::string folder;
   std::string objects = "objects.csv";  ///< empty: none are read, each frame has no detections
   std::string odometry = "odometry/vo_orb.txt";
+  std::string fixes = {};  ///< empty: none are read
 };
 
-/// Reads times.txt, calib.txt, odometry and objects, and poses.txt if there is one.
+/// Reads times.txt, calib.txt, odometry and objects, fixes if they are asked for, and poses.txt if there is one.
 /// Throws InputError naming the file if one is missing, malformed, or has another number of rows than times.txt.
 Dataset readDataset(const DatasetFiles& files, const ClassTable& classes);
 

@@ -11,17 +11,19 @@
 #include <variant>
 
 #include <nav_msgs/Odometry.h>
+#include <sensor_msgs/NavSatFix.h>
 
 #include <semantic_mht_slam/SemanticObjectArray.h>
 
 namespace semantic_mht_slam {
 
 /// A message for the estimator.
-using InputMessage = std::variant<nav_msgs::OdometryConstPtr, SemanticObjectArrayConstPtr>;
+using InputMessage =
+    std::variant<nav_msgs::OdometryConstPtr, SemanticObjectArrayConstPtr, sensor_msgs::NavSatFixConstPtr>;
 
 /// Bounded queue between the subscribers and the worker. What is too much for the worker is dropped and counted:
-/// objects that have waited for too long, and when the queue is full the oldest objects, or the oldest odometry if none
-/// waits.
+/// objects that have waited for too long, and when the queue is full the oldest objects, else the oldest fix, or the
+/// oldest odometry if neither waits.
 class InputQueue {
  public:
   using Clock = std::chrono::steady_clock;
@@ -46,6 +48,7 @@ class InputQueue {
 
   std::size_t droppedOdometry() const;
   std::size_t droppedObjects() const;
+  std::size_t droppedFixes() const;
 
  private:
   struct Waiting {
@@ -55,6 +58,7 @@ class InputQueue {
   };
 
   static bool isObjects(const Waiting& waiting);
+  static bool isFix(const Waiting& waiting);
   void makeRoom();
   void dropOverdue();
 
@@ -67,6 +71,7 @@ class InputQueue {
   std::optional<std::uint64_t> in_hand_;  ///< that the worker handles
   std::size_t dropped_odometry_ = 0;
   std::size_t dropped_objects_ = 0;
+  std::size_t dropped_fixes_ = 0;
   bool is_closed_ = false;
 };
 

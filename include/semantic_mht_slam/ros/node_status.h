@@ -16,6 +16,8 @@ namespace semantic_mht_slam {
 /// What the node's worker knows of its input and of the estimator.
 struct EstimatorStatus {
   InputCounters counters;
+  GnssCounters fixes;
+  bool is_map_placed = false;  ///< fixes determine where it is on the Earth
   RefusedInput refused;
   std::size_t initial_poses_refused = 0;
   std::string initial_pose_problem;       ///< of the newest one

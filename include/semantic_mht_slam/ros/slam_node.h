@@ -71,6 +71,7 @@ class SlamNode {
 
   void receive(const nav_msgs::OdometryConstPtr& message, const std::string& publisher);
   void receive(const SemanticObjectArrayConstPtr& message, const std::string& publisher);
+  void receive(const sensor_msgs::NavSatFixConstPtr& message) { queue_.push(message); }
   void subscribe();
   void advertiseServices();
   void advertiseRequests(ros::NodeHandle& handle);
@@ -84,6 +85,7 @@ class SlamNode {
   void warnOfDrops();
   void handle(const nav_msgs::Odometry& message);
   void handle(const SemanticObjectArray& message);
+  void handle(const sensor_msgs::NavSatFix& message);
   void process(const nav_msgs::Odometry& message);
   void beginSessionUnlessGoingOn(const nav_msgs::Odometry& message);
   std::optional<Stamp> latestStamp() const;
@@ -175,6 +177,7 @@ class SlamNode {
   InputQueue queue_;
   ros::Subscriber odometry_subscriber_;
   ros::Subscriber objects_subscriber_;
+  ros::Subscriber fixes_subscriber_;
   ros::Subscriber initial_pose_subscriber_;
   std::vector<ros::ServiceServer> services_;
   ros::CallbackQueue service_queue_;

@@ -39,6 +39,12 @@ class MapGraph {
   /// Whether a keyframe follows the one before as `goOnAt` says.
   bool beginsSession(KeyframeId keyframe) const;
 
+  /// Positions of keyframes in a frame beside the map (see `PoseGraph::addPosition`), for the next solution.
+  void add(const std::vector<OuterPosition>& positions);
+
+  /// Where the map is in that frame, as far as it is determined.
+  std::optional<Pose> T_outer_map() const { return graph_.T_outer_world(); }
+
   /// Takes the closures of the map that are verified and new, and decides which of them agree with the odometry and
   /// with each other.
   [[nodiscard]] GraphUpdate review(const Map& map);
@@ -75,6 +81,9 @@ class MapGraph {
 
   /// Into an empty graph, or out of one (see `StateArchive`).
   void transfer(StateArchive& archive, const Map& map);
+
+  /// The same of the positions beside the map.
+  void transferPositions(StateArchive& archive) { graph_.transferPositions(archive); }
 
  private:
   std::vector<PoseNode> expectedOdometry(const Map& map) const;

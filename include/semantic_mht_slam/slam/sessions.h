@@ -51,6 +51,10 @@ class Sessions {
   /// The samples of the present session behind a stamp.
   std::vector<StampedPose> odometryAfter(Stamp stamp) const;
 
+  /// The odometry of the present session at a stamp, interpolated; empty outside of it, and in a gap longer than
+  /// `max_gap_s` in which the vehicle moved.
+  std::optional<Pose> odometryAt(Stamp stamp, double max_gap_s) const;
+
   /// True if the keyframe is of the present session, and no fix of it is newer.
   bool isNewestFix(const Map& map, KeyframeId keyframe) const;
 

@@ -16,6 +16,7 @@
 #include "semantic_mht_slam/mapping/mapper.h"
 #include "semantic_mht_slam/models/frame.h"
 #include "semantic_mht_slam/slam/frame_assembler.h"
+#include "semantic_mht_slam/slam/gnss_fixes.h"
 #include "semantic_mht_slam/slam/loop_closer.h"
 #include "semantic_mht_slam/slam/map_graph.h"
 #include "semantic_mht_slam/slam/map_uncertainty.h"
@@ -46,6 +47,7 @@ struct SlamConfig {
   MapperConfig mapper;
   BackEndConfig back_end;
   LocalizerConfig localization;
+  GnssConfig gnss;  ///< described by `SystemConfig`: without fixes it says nothing of a map
 };
 
 /// The defaults that belong to a method.
@@ -98,6 +100,7 @@ struct SlamParts {
   OdometryModel odometry = {};               ///< as far as it is known
   std::optional<UncertainPose> latest = {};  ///< at the newest odometry sample; none while the vehicle is lost
   FixedAxesCov start_cov = gaugeCov();       ///< of the first keyframe, which may come long after the first pose
+  GnssFixes fixes{GnssConfig{}};
 };
 
 /// Makes mapper, graph and loop closer anew for a configuration whose lengths have changed (see `fittedTo`).
@@ -128,6 +131,9 @@ class Slam {
 
   /// What the detector saw at `stamp`, in the base frame. Bad ones are dropped and counted.
   void addDetections(Stamp stamp, Detections detections);
+
+  /// A position by satellites. Bad ones are dropped and counted (see `GnssFixes`).
+  void addFix(const GnssFix& fix) { parts_.fixes.add(fix); }
 
   /// Ends the current submap, so that what it saw is in the map, and solves the whole pose graph.
   void finish();

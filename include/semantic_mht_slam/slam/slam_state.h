@@ -15,6 +15,9 @@ struct StateSection {
   std::string bytes;
 };
 
+/// The section that only a map with positions by satellites has.
+constexpr const char* kFixesSection = "fixes";
+
 /// Everything that an estimator with the same class table needs to go on as if it had never stopped: the input that
 /// still waits, the odometry so far, the open submap with its hypotheses, the finished submaps, keyframes, closures and
 /// the pose graph.
