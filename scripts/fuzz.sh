@@ -28,7 +28,7 @@ run_target() {
   SMHT_FUZZ_SEEDS="$corpus" "$INSTRUMENTED/fuzz_$1" -runs=1 >/dev/null 2>&1
   begun=$(processor_s)
   while [ "$used" -lt "$seconds" ] && [ "$found" -eq 0 ]; do  # libFuzzer's clock goes on while others have the processor
-    (cd "$findings" && "$INSTRUMENTED/fuzz_$1" -max_total_time="$((seconds - used))" -rss_limit_mb=2048 -timeout=20 \
+    (cd "$findings" && "$INSTRUMENTED/fuzz_$1" -max_total_time="$((seconds - used))" -rss_limit_mb=2048 -timeout=60 \
       -print_final_stats=1 -close_fd_mask=1 "$corpus") >"$log" 2>&1 || found=1
     used=$(($(processor_s) - begun))
     inputs=$((inputs + $(number stat::number_of_executed_units "$log")))

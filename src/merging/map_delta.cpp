@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "semantic_mht_slam/common/dense_solvers.h"
@@ -48,7 +51,7 @@ class Rebuilding {
 
   /// `odometry`: what is known of it by now.
   void add(const MapDelta& delta, const std::vector<bool>& held, const OdometryModel& odometry) {
-    if (delta.keyframes.empty()) throw InputError("a submap without a keyframe");
+    requireSound(delta);
     const SubmapId id = parts_.map.submaps().nextId();
     if (delta.T_map_odom) {
       parts_.graph.settle(parts_.map);
@@ -58,13 +61,16 @@ class Rebuilding {
     std::vector<Keyframe> keyframes;
     std::vector<std::vector<Sighting>> sightings;
     for (const DeltaKeyframe& seen : delta.keyframes) {
-      requireInOrder(seen);
       keyframes.push_back(keyframeOf(seen, submap));
       sightings.push_back(sightingsOf(seen, delta));
       noteSideBySide(seen, delta, keyframes.back().frame, submap);
     }
     const auto ids = parts_.map.add(std::make_shared<const Submap>(std::move(submap)), std::move(keyframes));
-    parts_.graph.add(parts_.map, ids, sightings, odometry);
+    try {
+      parts_.graph.add(parts_.map, ids, sightings, odometry);
+    } catch (const std::invalid_argument& error) {  // such as odometry that covers too much ground to be of use
+      throw InputError(std::string("keyframes that make no graph: ") + error.what());
+    }
     for (LoopClosureRecord closure : delta.closures) {
       const bool is_known =
           parts_.map.keyframes().has(closure.query_keyframe) && parts_.map.keyframes().has(closure.match_keyframe);
@@ -85,9 +91,19 @@ class Rebuilding {
   }
 
  private:
-  void requireInOrder(const DeltaKeyframe& next) {
-    if (next.driven.way_m < driven_m_) throw InputError("keyframes that are not in the order of the drive");
-    driven_m_ = next.driven.way_m;
+  void requireSound(const MapDelta& delta) {
+    if (delta.keyframes.empty()) throw InputError("a submap without a keyframe");
+    for (const DeltaKeyframe& keyframe : delta.keyframes) {
+      if (keyframe.driven.way_m < driven_m_) throw InputError("keyframes that are not in the order of the drive");
+      driven_m_ = keyframe.driven.way_m;
+      std::set<std::size_t> landmarks;
+      for (const DeltaSighting& seen : keyframe.sightings) {
+        if (seen.landmark >= delta.landmarks.size()) throw InputError("a sighting of no landmark");
+        if (!landmarks.insert(seen.landmark).second) throw InputError("a keyframe that sees a landmark twice");
+        if (!isCovariance(seen.position.cov_m2))
+          throw InputError("a sighting whose covariance is not positive definite");
+      }
+    }
   }
 
   Submap submapOf(const MapDelta& delta, SubmapId id) const {
@@ -126,7 +142,6 @@ class Rebuilding {
       const Pose T_submap_base = T_submap_odom * keyframe.T_odom_base;
       const Eigen::Matrix3d R = T_submap_base.rotation.toRotationMatrix();
       for (const DeltaSighting& seen : keyframe.sightings) {
-        if (seen.landmark >= delta.landmarks.size()) throw InputError("a sighting of no landmark");
         const Eigen::Matrix3d one = R * inverted(seen.position.cov_m2) * R.transpose();
         information[seen.landmark] += one;
         weighted[seen.landmark] += one * (T_submap_base * seen.position.mean_m);
@@ -137,6 +152,9 @@ class Rebuilding {
       if (information[i].isZero(0.0)) throw InputError("a landmark without a sighting");
       const Eigen::Matrix3d cov_m2 = symmetric(inverted(information[i]));
       places.push_back({cov_m2 * weighted[i], cov_m2});
+      if (!isCovariance(cov_m2) || !places.back().mean_m.allFinite()) {
+        throw InputError("a landmark that its sightings do not place");
+      }
     }
     return places;
   }

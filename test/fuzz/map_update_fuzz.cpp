@@ -16,7 +16,23 @@ namespace {
 
 constexpr std::size_t kMostUpdates = 20;
 
-/// The updates of a drive that closes a loop.
+/// From the last keyframe to the first, as the map has them.
+MapUpdateClosure closureOf(const Map& map) {
+  MapUpdateClosure closure;
+  const KeyframeId last(map.keyframes().size() - 1);
+  closure.query_keyframe = static_cast<std::uint32_t>(last.index());
+  const Pose T_match_query = map.T_map_keyframe(KeyframeId(0)).inverse() * map.T_map_keyframe(last);
+  const Eigen::Vector3d rotation_rad = logRotation(T_match_query.rotation);
+  for (std::size_t i = 0; i < 3; ++i) {
+    closure.position[i] = static_cast<float>(T_match_query.translation_m[static_cast<Eigen::Index>(i)]);
+    closure.rotation[i] = static_cast<float>(rotation_rad[static_cast<Eigen::Index>(i)]);
+  }
+  constexpr std::size_t kDiagonal[] = {0, 6, 11, 15, 18, 20};
+  for (const std::size_t i : kDiagonal) closure.covariance[i] = 0.01F;
+  return closure;
+}
+
+/// The updates of a drive, the last one with a loop closure.
 struct GoodUpdates {
   const SlamConfig config = defaultsOf(Method::kDpmhm);
   const ClassTable classes = makeStreetClasses();
@@ -24,9 +40,11 @@ struct GoodUpdates {
 
   GoodUpdates() {
     Slam slam(config, classes);
-    SquareDrive(7).feed(slam, 0, 560);
+    SquareDrive(7).feed(slam, 0, 150);  // a short one: thousands of maps are made of it
     slam.finish();
     for (const SubmapId id : slam.map().submaps().ids()) updates.push_back(toMessage(slam.parts(), id, classes));
+    updates.back().closures.push_back(closureOf(slam.map()));
+    updates.back().closures_held = {1};
   }
 };
 
