@@ -21,6 +21,6 @@ instrumented_targets() { cmake --build "$INSTRUMENTED" --target help | sed -nE "
 
 # instrumented_build TARGET...
 instrumented_build() {
-  cmake --build "$INSTRUMENTED" --target "$@" -- -j"$(nproc)" >"$INSTRUMENTED/build.log" 2>&1 ||
+  cmake --build "$INSTRUMENTED" --target "$@" -- -j"${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" >"$INSTRUMENTED/build.log" 2>&1 ||
     { grep -A5 "error:" "$INSTRUMENTED/build.log" | head -n 40 >&2; return 1; }
 }

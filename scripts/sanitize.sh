@@ -47,14 +47,15 @@ thread() {
     { tail -n 20 "$workspace/configure.log" >&2; exit 1; }
   for name in "${tests[@]}"; do
     log="$workspace/$name.log"
-    cmake --build "$workspace/build" --target "${name}_rostest" -- -j"$(nproc)" >"$log" 2>&1 ||
+    cmake --build "$workspace/build" --target "${name}_rostest" -- -j"${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" >"$log" 2>&1 ||
       { echo "sanitize: ${name}_rostest cannot be built ($log)" >&2; failed=1; continue; }
     rm -rf "$workspace/reports/$name"
     mkdir -p "$workspace/reports/$name"
     # shellcheck disable=SC1091
     (set +u; source "$workspace/devel/setup.bash"
       export TSAN_OPTIONS="$options log_path=$workspace/reports/$name/tsan"
-      rostest --text "$REPOSITORY/test/ros/$name.test") >"$log" 2>&1
+      # with --text it would end well whatever the tests found
+      rostest --results-base-dir "$workspace/reports/$name" "$REPOSITORY/test/ros/$name.test") >"$log" 2>&1
     code=$?
     "$REPOSITORY/scripts/tsan_reports.py" "$workspace/reports/$name"/tsan.* >>"$log" || code=1
     report "$name" "$code" "$log"

@@ -153,7 +153,7 @@ build() {
   mkdir -p "$past"
   rm -f "$past/done"
   printf '%s' "$state" >"$past/begun"
-  cmake --build "$BUILD" -- -j"$(nproc)" --no-print-directory "${TARGETS[@]}" >"$BUILD/build.log" 2>&1 &
+  cmake --build "$BUILD" -- -j"${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" --no-print-directory "${TARGETS[@]}" >"$BUILD/build.log" 2>&1 &
   say_progress "$!" "$BUILD/build.log"
   wait "$!" || {
     grep -E -A5 "error:|\*\*\*" "$BUILD/build.log" | head -n 60 >&2 || true

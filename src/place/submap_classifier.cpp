@@ -96,8 +96,15 @@ bool isInteger(const cv::FileNode& node, int value) {
   return node.isInt() && static_cast<int>(node) == value;
 }
 
-// What OpenCV looks up while it reads a tree, without asking whether it is there: how many variables it has, their
-// kinds, all of them numbers (0), the label's last, and which variable each split looks at.
+// All features in their order: OpenCV writes and looks up at these places without asking whether they are there.
+bool areFeatures(const cv::FileNode& places) {
+  int next = 0;
+  return isSequence(places, kFeatures) &&
+         areAll(places, [&](const cv::FileNode& place) { return isInteger(place, next++); });
+}
+
+// What OpenCV looks up while it reads a tree, without asking whether it is there: how many variables it has, which
+// these are, their kinds, all of them numbers (0), the label's last, and which variable each split looks at.
 void requireVariables(const cv::FileNode& tree, const std::string& path) {
   constexpr std::size_t kVariables = kFeatures + 1;
   const auto isNumber = [](const cv::FileNode& kind) { return isInteger(kind, 0); };
@@ -112,7 +119,7 @@ void requireVariables(const cv::FileNode& tree, const std::string& path) {
   const bool is_usable =
       tree.isMap() && isInteger(tree["is_classifier"], 0) && isInteger(tree["var_all"], kVariables) &&
       isInteger(tree["var_count"], kFeatures) && isInteger(tree["cat_var_count"], 0) && isSequence(kinds, kVariables) &&
-      areAll(kinds, isNumber) && isSequence(tree["var_idx"], kFeatures) && areAll(tree["nodes"], areSplitsUsable);
+      areAll(kinds, isNumber) && areFeatures(tree["var_idx"]) && areAll(tree["nodes"], areSplitsUsable);
   if (!is_usable) throw InputError(path + ": the decision tree in it is damaged");
 }
 

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "semantic_mht_slam/common/error.h"
@@ -34,7 +37,11 @@ class Rebuilding {
     if (delta.begins_session) parts_.sessions.begin(parts_.map.keyframes().nextId());
     for (const Keyframe& keyframe : keyframes) parts_.sessions.add(StampedPose{keyframe.stamp, keyframe.T_odom_base});
     const auto ids = parts_.map.add(std::make_shared<const Submap>(std::move(submap)), std::move(keyframes));
-    parts_.graph.add(parts_.map, ids, sightingsOf(delta), odometry);
+    try {
+      parts_.graph.add(parts_.map, ids, sightingsOf(delta), odometry);
+    } catch (const std::invalid_argument& error) {  // such as odometry that covers too much ground to be of use
+      throw InputError(std::string("keyframes that make no graph: ") + error.what());
+    }
     for (LoopClosureRecord closure : delta.closures) {
       const bool is_known =
           parts_.map.keyframes().has(closure.query_keyframe) && parts_.map.keyframes().has(closure.match_keyframe);
@@ -57,7 +64,8 @@ class Rebuilding {
 
  private:
   Keyframe keyframeOf(const DeltaKeyframe& seen, SubmapId submap) {
-    if (seen.driven.way_m < driven_m_) throw InputError("keyframes that are not in the order of the drive");
+    if (!(seen.driven.way_m >= driven_m_ && std::isfinite(seen.driven.way_m)))
+      throw InputError("keyframes that are not in the order of the drive");
     driven_m_ = seen.driven.way_m;
     T_odom_newest_ = T_odom_newest_ * seen.T_previous_keyframe;
     return {frames_++, submap, seen.driven.way_m, {}, seen.stamp, T_odom_newest_, seen.driven.turn_rad};
@@ -75,6 +83,9 @@ class Rebuilding {
       if (i > 0 && known.id <= delta.landmarks[i - 1].id) throw InputError("landmarks whose ids do not rise");
       MixtureLandmark landmark;
       landmark.id = known.id;
+      if (!known.position.mean_m.allFinite() || !isCovariance(known.position.cov_m2)) {
+        throw InputError("a landmark whose covariance is not positive definite");
+      }
       landmark.position = placeOf(known, keyframes);
       landmark.components.push_back({1.0, landmark.position});
       const int classes = classes_.size();
@@ -111,8 +122,12 @@ class Rebuilding {
             Submap& submap) const {
     const Pose T_keyframe_submap = keyframe.T_odom_base.inverse() * submap.T_odom_submap;
     int row = 0;
+    std::size_t next = 0;
     for (const std::size_t place : landmarks) {
-      if (place >= submap.landmarks.size()) throw InputError("a keyframe that shows no landmark");
+      if (place < next || place >= submap.landmarks.size()) {
+        throw InputError("a keyframe that shows no landmark, or one twice");
+      }
+      next = place + 1;
       const MixtureLandmark& landmark = submap.landmarks[place];
       keyframe.scene.objects.push_back(sceneObject(landmark, T_keyframe_submap, floor_m_));
       const bool is_second = std::any_of(delta.duplicates.begin(), delta.duplicates.end(),

@@ -139,6 +139,7 @@ MapDelta deltaOf(const SubmapContent& content) {
     for (const SceneObject& object : keyframe.scene.objects) {
       delta.keyframes.back().landmarks.push_back(std::distance(seen.begin(), seen.find(object.landmark)));
     }
+    std::sort(delta.keyframes.back().landmarks.begin(), delta.keyframes.back().landmarks.end());
   }
   delta.keyframes[0].T_previous_keyframe =
       content.begins_session ? content.nodes.front().T_previous_node : content.T_before_first;

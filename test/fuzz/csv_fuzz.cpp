@@ -3,6 +3,7 @@
 #include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
 #include "support/square_drive.h"
+#include "support/text_mutation.h"
 
 namespace semantic_mht_slam {
 
@@ -13,7 +14,10 @@ FuzzTarget csvTarget() {
   };
   return {"csv",
           run,
-          {"frame,class,x,y,z,score,sxx,sxy,sxz,syy,syz,szz\n0,pole,1,2,3,.5,1,0,0,1,0,1\n7,trunk,-4,5e1,6,,,,,,,\n"}};
+          {"frame,class,x,y,z,score,sxx,sxy,sxz,syy,syz,szz\n0,pole,1,2,3,.5,1,0,0,1,0,1\n7,trunk,-4,5e1,6,,,,,,,\n",
+           "class,frame,z,y,x,moving,points,size_x,size_y,size_z,colour\r\npole,99,1,2,3,1,50,.2,.2,3,red\r\n\r\n"
+           "trunk,0,1,2,3,0,,,,,\r\n"},
+          mutatedText};
 }
 
 }  // namespace semantic_mht_slam

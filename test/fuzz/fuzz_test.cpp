@@ -29,7 +29,10 @@ TEST_P(FuzzTest, ChangedSeedsAreRefusedOrTaken) {
   for (int i = 0; i < wanted; ++i) {
     Rng rng = Rng(5).fork(target.name, static_cast<std::uint64_t>(i));
     std::string bytes = target.seeds[rng.index(target.seeds.size())];
-    for (std::size_t changes = 1 + rng.index(4); changes > 0; --changes) bytes = mutated(std::move(bytes), rng);
+    for (std::size_t changes = 1 + rng.index(4); changes > 0; --changes) {
+      const bool as_it_likes = target.mutate && rng.bernoulli(0.5);
+      bytes = as_it_likes ? target.mutate(std::move(bytes), rng) : mutated(std::move(bytes), rng);
+    }
     EXPECT_NO_THROW(taken += target.run(bytes) ? 1 : 0) << target.name << ", input " << i;
     ++executed;
   }

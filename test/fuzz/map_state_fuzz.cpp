@@ -7,6 +7,7 @@
 #include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
 #include "support/square_drive.h"
+#include "support/state_mutation.h"
 
 namespace semantic_mht_slam {
 namespace {
@@ -52,7 +53,7 @@ struct Driven {
 FuzzTarget mapSectionTarget() {
   const auto driven = std::make_shared<Driven>(60);
   return {"map_section", [driven](const std::string& bytes) { return driven->load(bytes, [](Slam&) {}); },
-          driven->seeds()};
+          driven->seeds(), mutated};
 }
 
 FuzzTarget mapStateTarget() {
@@ -64,7 +65,8 @@ FuzzTarget mapStateTarget() {
     landmarksOf(slam);
     slam.snapshot();
   };
-  return {"map_state", [driven, goOn](const std::string& bytes) { return driven->load(bytes, goOn); }, driven->seeds()};
+  return {"map_state", [driven, goOn](const std::string& bytes) { return driven->load(bytes, goOn); }, driven->seeds(),
+          mutated};
 }
 
 }  // namespace semantic_mht_slam

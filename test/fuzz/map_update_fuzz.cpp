@@ -1,4 +1,5 @@
 // What the map server takes from a robot: good updates, in which the bytes change fields, and the map that they make.
+#include <algorithm>
 #include <memory>
 
 #include "semantic_mht_slam/bags/conversions.h"
@@ -13,7 +14,24 @@
 namespace semantic_mht_slam {
 namespace {
 
-/// The updates of a drive that closes a loop.
+constexpr std::size_t kMostUpdates = 20;
+
+/// From the last keyframe to the first, as the map has them.
+MapUpdateClosure closureOf(const Map& map) {
+  MapUpdateClosure closure;
+  const KeyframeId last(map.keyframes().size() - 1);
+  closure.query_keyframe = static_cast<std::uint32_t>(last.index());
+  const Pose T_match_query = map.T_map_keyframe(KeyframeId(0)).inverse() * map.T_map_keyframe(last);
+  const Eigen::Vector3d rotation_rad = logRotation(T_match_query.rotation);
+  for (std::size_t i = 0; i < 3; ++i) {
+    closure.position[i] = static_cast<float>(T_match_query.translation_m[static_cast<Eigen::Index>(i)]);
+    closure.rotation[i] = static_cast<float>(rotation_rad[static_cast<Eigen::Index>(i)]);
+  }
+  closure.stddev.fill(0.1F);
+  return closure;
+}
+
+/// The updates of a drive, the last one with a loop closure.
 struct GoodUpdates {
   const SlamConfig config = defaultsOf(Method::kDpmhm);
   const ClassTable classes = makeStreetClasses();
@@ -21,16 +39,29 @@ struct GoodUpdates {
 
   GoodUpdates() {
     Slam slam(config, classes);
-    SquareDrive(7).feed(slam, 0, 560);
+    SquareDrive(7).feed(slam, 0, 150);  // a short one: thousands of maps are made of it
     slam.finish();
     for (const SubmapId id : slam.map().submaps().ids()) updates.push_back(toMessage(slam.parts(), id, classes));
+    updates.back().closures.push_back(closureOf(slam.map()));
+    updates.back().closures_held = {1};
   }
 };
 
 class ChangedUpdates {
  public:
   ChangedUpdates(const GoodUpdates& good, const std::string& bytes) : updates_(good.updates), values_(bytes) {
-    while (!values_.isEmpty()) change(updates_[values_.byte() % updates_.size()]);
+    while (!values_.isEmpty()) {
+      const std::uint8_t which = values_.byte();
+      const std::uint8_t what = values_.byte();
+      MapUpdate& update = updates_[which % updates_.size()];
+      if (what < 160) {
+        changeField(what % 16, update);
+      } else if (what < 240) {
+        changeItem(what % 8, update);
+      } else {
+        changeOrder(which, what);
+      }
+    }
   }
 
   const std::vector<MapUpdate>& updates() const { return updates_; }
@@ -44,8 +75,8 @@ class ChangedUpdates {
 
   float real() { return static_cast<float>(values_.number()); }
 
-  void change(MapUpdate& update) {
-    switch (values_.byte() % 16) {
+  void changeField(int which, MapUpdate& update) {
+    switch (which) {
       case 0:
         update.range_factor = real();
         break;
@@ -99,6 +130,47 @@ class ChangedUpdates {
       default:
         oneOf(update.closures_held) = values_.byte();
         break;
+    }
+  }
+
+  void changeItem(int which, MapUpdate& update) {
+    switch (which) {
+      case 0:
+        oneOf(update.keyframes).driven = real();
+        break;
+      case 1:
+        oneOf(update.keyframes).turned = real();
+        break;
+      case 2:
+        oneOf(update.keyframes).rotation[values_.byte() % 3] = static_cast<std::int16_t>(256 * values_.byte());
+        break;
+      case 3:
+        oneOf(update.landmarks).class_prob = values_.byte();
+        break;
+      case 4:
+        oneOf(update.landmarks).existence_prob = values_.byte();
+        break;
+      case 5:
+        oneOf(update.closures).rotation[values_.byte() % 3] = real();
+        break;
+      case 6:
+        if (!update.closures.empty()) update.closures.push_back(update.closures.front());
+        break;
+      default:
+        update.header.stamp.sec = values_.byte() << 24U;
+        break;
+    }
+  }
+
+  /// One update twice, missing, or in the place of another.
+  void changeOrder(std::size_t which, int what) {
+    const auto place = updates_.begin() + static_cast<std::ptrdiff_t>(which % updates_.size());
+    if (what % 3 == 0 && updates_.size() > 1) {
+      updates_.erase(place);
+    } else if (what % 3 == 1) {
+      std::iter_swap(place, updates_.begin());
+    } else if (updates_.size() < kMostUpdates) {
+      updates_.insert(place, MapUpdate(*place));
     }
   }
 

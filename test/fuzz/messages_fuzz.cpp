@@ -17,6 +17,7 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr int kMostMessages = 400;
+constexpr int kMostFrames = 700;  // a round and some
 
 class FuzzedMessages {
  public:
@@ -47,7 +48,7 @@ class FuzzedMessages {
 
  private:
   void drive(int frames) {
-    for (const int end = frame_ + frames; frame_ < end; ++frame_) {
+    for (const int end = std::min(frame_ + frames, kMostFrames); frame_ < end; ++frame_) {
       const StampedPose odometry{SquareDrive::stampAt(frame_), SquareDrive::odometryAt(frame_)};
       take(toOdometry(odometry, frames_.odom_frame, frames_.base_frame));
       take(toMessage(odometry.stamp, frames_.base_frame, drive_.detectionsAt(frame_), classes_));

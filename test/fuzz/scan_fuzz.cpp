@@ -1,4 +1,5 @@
-// A scan and its labels: four in five of the bytes are points, the others labels.
+// A scan and its labels: of every 20 bytes 16 are a point and 4 a label, points first; what is left over, if it is
+// much, makes the file of the labels too long.
 #include <cstring>
 
 #include "semantic_mht_slam/io/scan_file.h"
@@ -33,9 +34,10 @@ std::string goodScan() {
 FuzzTarget scanTarget() {
   const ExtractionConfig config{makeExtractionClasses()};
   const auto run = [config, labels = makeExtractionLabels()](const std::string& bytes) {
-    const std::size_t scan_bytes = bytes.size() / 5 * 4;
-    const FuzzedFile scan(bytes.substr(0, scan_bytes));
-    const FuzzedFile label_file(bytes.substr(scan_bytes));
+    const std::size_t points = bytes.size() / 20;
+    const std::size_t rest = bytes.size() % 20;
+    const FuzzedFile scan(bytes.substr(0, points * 16));
+    const FuzzedFile label_file(bytes.substr(points * 16, points * 4 + (rest > 16 ? rest : 0)));
     return readOrRefuse(
         [&] { extractObjects(readLabelledScan(scan.path(), label_file.path()), labels, config).detections(); });
   };

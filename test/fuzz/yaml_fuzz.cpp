@@ -6,6 +6,7 @@
 #include "fuzz/fuzz_target.h"
 #include "fuzz/fuzzed_file.h"
 #include "support/square_drive.h"
+#include "support/text_mutation.h"
 
 namespace semantic_mht_slam {
 
@@ -27,7 +28,8 @@ FuzzTarget yamlTarget() {
       run,
       {"max_hypotheses: 20\nseed: 3\n", "classes:\n  - {id: 1, name: pole}\n  - {id: 2, name: trunk, static: true}\n",
        "class_table: t.yaml\nlabels: {1: pole, 2: trunk}\nmoving: {3: trunk}\nignored: [0, 7]\n",
-       readFile(SMHT_SOURCE_DIR "/config/classes_semantic_kitti.yaml")}};
+       readFile(SMHT_SOURCE_DIR "/config/classes_semantic_kitti.yaml"), readFile(SMHT_SOURCE_DIR "/config/paper.yaml")},
+      mutatedText};
 }
 
 }  // namespace semantic_mht_slam

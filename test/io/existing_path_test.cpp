@@ -47,7 +47,9 @@ TEST_F(ExistingPathTest, WhatTheSystemDoesNotTellIsRefusedWithItsReason) {
   ClassInfo pole;
   pole.name = "pole";
   const ClassTable classes({pole}, "test");
-  for (const auto& [path, reason] : untold_) {
+  for (const auto& one : untold_) {
+    const std::string& path = one.first;  // C++17's lambdas take no structured binding with them
+    const std::string& reason = one.second;
     EXPECT_TRUE(mayExist(path)) << path;
     EXPECT_FALSE(isFolder(path)) << path;
     expectInputError([&] { sizeOfFile(path); }, {path, reason});

@@ -1,5 +1,7 @@
 #include "semantic_mht_slam/slam/map_delta.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "semantic_mht_slam/common/error.h"
@@ -95,6 +97,14 @@ TEST_F(MapDeltaTest, DeltasThatContradictThemselvesAreRefused) {
   expectRefused([](MapByDeltas& map) { map.deltas.clear(); });
   expectRefused([](MapByDeltas& map) { map.deltas[0].keyframes.clear(); });
   expectRefused([](MapByDeltas& map) { map.deltas[0].keyframes[0].landmarks[0] = 1000000; });
+  expectRefused([](MapByDeltas& map) {
+    std::vector<std::size_t>& landmarks = map.deltas[0].keyframes[0].landmarks;
+    landmarks.push_back(landmarks.front());
+  });
+  expectRefused([](MapByDeltas& map) { map.deltas[0].landmarks[0].position.cov_m2(0, 0) *= -1.0; });
+  expectRefused([](MapByDeltas& map) {
+    map.deltas.back().keyframes.back().driven.way_m = std::numeric_limits<double>::infinity();
+  });
   expectRefused([](MapByDeltas& map) { std::swap(map.deltas[0].landmarks[0], map.deltas[0].landmarks[1]); });
   expectRefused([](MapByDeltas& map) { map.deltas[0].landmarks[0].keyframe = 1000000; });
   expectRefused([](MapByDeltas& map) {

@@ -121,6 +121,7 @@ TEST(SubmapClassifierTest, FilesWithOtherFeaturesNumbersOrTreesAreRefused) {
   expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: [ 0, 0, 0, 1 ]", "damaged");
   expectRefused("var_type: [ 0, 0, 0, 0 ]", "var_type: 5", "damaged");
   expectRefused("var:", "var:9, other:", "damaged");
+  expectRefused("var_idx: [ 0, 1, 2 ]", "var_idx: [ 0, 1, -1000000000 ]", "damaged");
   expectRefused("value: ", ": ", "not a tree");
 }
 
