@@ -2,6 +2,7 @@
 #include <bitset>
 #include <cmath>
 
+#include "semantic_mht_slam/bags/conversions.h"
 #include "semantic_mht_slam/bags/map_update_conversions.h"
 #include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/common/ros_time.h"

@@ -5,8 +5,8 @@
 
 #include <semantic_mht_slam/GetMapUpdates.h>
 
-#include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/bags/map_update_conversions.h"
+#include "semantic_mht_slam/common/error.h"
 #include "semantic_mht_slam/ros/service_call.h"
 
 namespace semantic_mht_slam {

@@ -10,8 +10,8 @@
 
 #include <semantic_mht_slam/MapUpdate.h>
 
-#include "semantic_mht_slam/slam/map_delta.h"
 #include "semantic_mht_slam/ros/throttled_warnings.h"
+#include "semantic_mht_slam/slam/map_delta.h"
 
 #include "map_server_maps.h"
 
