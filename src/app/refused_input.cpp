@@ -88,6 +88,7 @@ std::vector<std::string> droppedFixes(const GnssCounters& counters, const Refuse
   };
   dropped(counters.no_fix, "the receiver says that it has none");
   dropped(counters.invalid, "not finite, not on the Earth, or an antenna 1 km away");
+  dropped(counters.too_coarse, "the horizontal standard deviation is beyond 10 km");
   dropped(counters.null_island, "latitude and longitude are both zero");
   dropped(counters.bad_stamps + refused.fixes_bad_stamps,
           "the stamp is zero, negative, or beyond the end of ROS's time");
@@ -96,6 +97,8 @@ std::vector<std::string> droppedFixes(const GnssCounters& counters, const Refuse
   dropped(counters.far_ahead, "the stamp is far ahead of the odometry");
   dropped(counters.far_away, "nowhere near the other fixes");
   dropped(counters.no_odometry, "in a gap of the odometry");
+  dropped(counters.crowded_out, "too many waited for keyframes");
+  dropped(refused.fixes_without_mapping, "while the vehicle localizes, or before odometry that may begin a session");
   if (refused.fixes_without_transform > 0) {
     lines.push_back(names.fixes + ": no transform from '" + refused.antenna_frame + "' to '" + names.base_frame +
                     "'; the antenna is taken to be where gnss.antenna_x, _y and _z have it");

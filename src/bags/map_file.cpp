@@ -172,12 +172,12 @@ class MapReader {
                           [&](const StateSection& section) { return section.name == name; }),
               "damaged: section '" + name + "' is missing");
     }
-    readFinished(bag, map);
+    readFinished(bag, header, map);
     return map;
   }
 
   /// If the state is of no use.
-  void readFinished(const rosbag::Bag& bag, LoadedMap& map) const {
+  void readFinished(const rosbag::Bag& bag, const MapHeader& header, LoadedMap& map) const {
     const std::string problem = whyUnreadable(map.state);
     if (problem.empty() || rosbag::View(bag, rosbag::TopicQuery(std::vector<std::string>{kUpdateTopic})).size() == 0)
       return;
@@ -187,6 +187,8 @@ class MapReader {
     } catch (const InputError& error) {
       fail(map.remade + ": " + error.what());
     }
+    require(map.finished.deltas.size() == header.submaps, map.remade + ": damaged: submaps are missing");
+    map.state.sections.clear();
   }
 
   const std::string& path_;

@@ -188,6 +188,7 @@ MapDelta fromMessage(const MapUpdate& message, const ClassTable& classes) {
   readLandmarks(message, classes, delta);
   readShown(message, delta);
   delta.duplicates = readPairs("duplicates", message.duplicates);
+  if (delta.duplicates.size() > delta.landmarks.size()) refuse("duplicates", "more than landmarks");
   const std::vector<SameLandmark> pairs = readPairs("pairs", message.pairs);
   for (const MapUpdateClosure& closure : message.closures) delta.closures.push_back(readClosure(closure, pairs));
   return delta;

@@ -142,7 +142,11 @@ MapUpdate toMessage(const SubmapContent& content, double range_factor, const Cla
   message.number = static_cast<std::uint32_t>(content.submap->id.index());
   message.classes_digest = digestOf(classes);
   message.range_factor = static_cast<float>(range_factor);
-  message.landmark_step = static_cast<float>(kLandmarkStep_m * range_factor);
+  double farthest_m = 0.0;
+  for (const DeltaLandmark& landmark : delta.landmarks) {
+    farthest_m = std::max(farthest_m, landmark.position.mean_m.cwiseAbs().maxCoeff());
+  }
+  message.landmark_step = static_cast<float>(std::max(kLandmarkStep_m * range_factor, farthest_m / (kMostSteps - 1.0)));
   writeOdometry(delta.odometry, message);
   writeKeyframes(delta, message);
   writeLandmarks(delta, message);

@@ -15,8 +15,8 @@ enum FixColumn : std::size_t { kTime, kLatitude, kLongitude, kAltitude, kStddevE
 const std::vector<std::string> kFixRequired = {"time", "latitude", "longitude"};
 const std::vector<std::string> kFixOptional = {"altitude", "stddev_east", "stddev_north", "stddev_up"};
 
-constexpr double kMostSeconds = 1e10;
-constexpr double kUpStddev = 2.0;  // times the horizontal one, where only that is given
+constexpr double kMostSeconds = 9e9;  // that nanoseconds can hold
+constexpr double kUpStddev = 2.0;     // times the horizontal one, where only that is given
 
 Stamp readTime(const CsvRow& row) {
   const double seconds = row.number(kTime);

@@ -228,7 +228,8 @@ class Joining {
     }
     parts.mapper->goOnAfter(SubmapId(parts.map.submaps().size() - 1), landmarks_);
     parts.mapper->forgetSurroundings();
-    parts.closer->setOdometry(parts.mapper->odometryModel());
+    parts.odometry = parts.mapper->odometryModel();
+    parts.closer->setOdometry(parts.odometry);
     parts.is_fitted = true;
     parts.detector_range = first.detector_range;
     parts.assembler.countFrom(frames_);

@@ -74,7 +74,9 @@ ServedMaps::ServedMaps(SystemConfig config, SlamConfig slam_config, ClassTable c
       keep_reading_(std::move(keep_reading)) {}
 
 std::shared_ptr<const SlamParts> ServedMaps::read(const std::string& path) const {
-  const std::shared_ptr<const Slam> slam = readFinishedMap(path, config_, slam_config_, classes_, keep_reading_);
+  const std::shared_ptr<const Slam> slam =
+      readFinishedMap(path, config_, slam_config_, classes_, keep_reading_,
+                      [](const std::string& remark) { ROS_WARN("%s", remark.c_str()); });
   if (slam->map().submaps().empty()) throw InputError(path + ": has no finished submap");
   return {slam, &slam->parts()};
 }

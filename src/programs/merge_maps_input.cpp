@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -127,8 +128,9 @@ MapInputs readMaps(const std::vector<std::string>& files, const std::string& con
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (isMapFile(files[i])) {
-      inputs.estimators.push_back(
-          readFinishedMap(files[i], inputs.config, inputs.slam_config, inputs.classes, [] { return true; }));
+      inputs.estimators.push_back(readFinishedMap(
+          files[i], inputs.config, inputs.slam_config, inputs.classes, [] { return true; },
+          [](const std::string& remark) { std::fprintf(stderr, "%s\n", remark.c_str()); }));
       inputs.maps.emplace_back(names[i], *inputs.estimators.back());
     } else {
       inputs.landmark_maps.push_back(std::make_unique<SlamParts>(makeLandmarkMap(files[i], bare[i], inputs)));

@@ -24,8 +24,8 @@ void InputQueue::push(InputMessage message) {
 }
 
 void InputQueue::makeRoom() {
-  auto dropped = std::find_if(messages_.begin(), messages_.end(), isObjects);
-  if (dropped == messages_.end()) dropped = std::find_if(messages_.begin(), messages_.end(), isFix);
+  auto dropped = std::find_if(messages_.begin(), messages_.end(), isFix);
+  if (dropped == messages_.end()) dropped = std::find_if(messages_.begin(), messages_.end(), isObjects);
   if (dropped == messages_.end()) dropped = messages_.begin();
   ++(isObjects(*dropped) ? dropped_objects_ : isFix(*dropped) ? dropped_fixes_ : dropped_odometry_);
   messages_.erase(dropped);

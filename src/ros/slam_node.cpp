@@ -83,12 +83,15 @@ void SlamNode::work() {
 }
 
 void SlamNode::handleSafely(const InputMessage& message) {
+  if (const auto* fix = std::get_if<sensor_msgs::NavSatFixConstPtr>(&message)) {
+    // It only waits in the estimator: that it does says nothing of whether the estimator fails.
+    if (!input_failures_.status().isLasting()) other_failures_.run("fix", [&] { handle(**fix); });
+    return;
+  }
   const auto* odometry = std::get_if<nav_msgs::OdometryConstPtr>(&message);
-  const bool is_objects = std::holds_alternative<SemanticObjectArrayConstPtr>(message);
-  const char* kind = odometry != nullptr ? "odometry" : is_objects ? "objects" : "fix";
   if (input_failures_.status().isLasting()) {
-    if (is_objects) ++estimator_.objects_while_failing;
-  } else if (input_failures_.run(kind, [&] { handleTimed(message); })) {
+    if (odometry == nullptr) ++estimator_.objects_while_failing;
+  } else if (input_failures_.run(odometry != nullptr ? "odometry" : "objects", [&] { handleTimed(message); })) {
     return;
   }
   if (odometry == nullptr || !isLocated(slam_->mode())) return;
@@ -218,7 +221,9 @@ void SlamNode::handle(const SemanticObjectArray& message) {
 }
 
 void SlamNode::handle(const sensor_msgs::NavSatFix& message) {
-  if (const auto fix = toFix(message, sensors_, config_.node, estimator_.refused)) slam_->addFix(*fix);
+  const bool may_begin_session = is_loaded_ || gate_.isHolding();  // the next odometry tells
+  const auto fix = may_begin_session ? std::nullopt : toFix(message, sensors_, config_.node, estimator_.refused);
+  if (may_begin_session || (fix && !slam_->addFix(*fix))) ++estimator_.refused.fixes_without_mapping;
 }
 
 void SlamNode::retryObjects() {

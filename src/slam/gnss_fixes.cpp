@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "semantic_mht_slam/common/gaussian.h"
 #include "semantic_mht_slam/common/ros_time.h"
@@ -11,17 +12,33 @@ namespace semantic_mht_slam {
 namespace {
 
 constexpr double kUnknownAltitudeStddev_m = 1000.0;
-constexpr double kUpStddevRatio = 2.0;  // of a receiver that says nothing of its noise
-constexpr double kMostStddev_m = 1e4;   // beyond, a fix says nothing
-constexpr double kNextFix_m = 1000.0;   // from the one before
-constexpr double kFarthestFix_m = 2e5;  // from the origin; the tangent plane is no plane of the drive any more
+constexpr double kUpStddevRatio = 2.0;    // of a receiver that says nothing of its noise
+constexpr double kMostVariance_m2 = 1e8;  // beyond, a fix says nothing
+constexpr double kNextFix_m = 1000.0;     // from the one before
+constexpr double kFarthestFix_m = 2e5;    // from the origin; the tangent plane is no plane of the drive any more
+constexpr std::size_t kRowElsewhere = 6;  // fixes that outvote an origin of fewer positions, which place no map yet
 constexpr double kNullIsland_deg = 1e-9;
 constexpr Stamp kFarAheadOfKeyframes = 600LL * 1000000000LL;
-constexpr std::size_t kMostWaiting = 6000;  // ten minutes of a fast receiver; no keyframe comes while one localizes
+constexpr std::size_t kMostWaiting = 6000;  // ten minutes of a fast receiver; no keyframe comes at known places
 
 GeodeticPoint withAltitude(GeodeticPoint place, double altitude_m) {
   if (!std::isfinite(place.altitude_m)) place.altitude_m = altitude_m;
   return place;
+}
+
+/// False for a deviation that is not known, or that is no number.
+bool isTooCoarse(const GnssFix& fix, int axis) {
+  return fix.cov_m2 && (*fix.cov_m2)(axis, axis) > kMostVariance_m2;
+}
+
+bool hasAltitude(const GnssFix& fix) {
+  return std::isfinite(fix.place.altitude_m) && !isTooCoarse(fix, 2);
+}
+
+void forgetAltitude(Eigen::Matrix3d& cov_m2) {
+  cov_m2.row(2).setZero();
+  cov_m2.col(2).setZero();
+  cov_m2(2, 2) = kUnknownAltitudeStddev_m * kUnknownAltitudeStddev_m;
 }
 
 /// Between two keyframes.
@@ -52,8 +69,9 @@ void describe(GnssConfig& config, Fields& fields) {
 GnssCounters operator-(GnssCounters counters, const GnssCounters& before) {
   for (const auto member :
        {&GnssCounters::received, &GnssCounters::used, &GnssCounters::covariances_unknown, &GnssCounters::no_fix,
-        &GnssCounters::invalid, &GnssCounters::null_island, &GnssCounters::bad_stamps, &GnssCounters::repeated,
-        &GnssCounters::late, &GnssCounters::far_ahead, &GnssCounters::far_away, &GnssCounters::no_odometry}) {
+        &GnssCounters::invalid, &GnssCounters::too_coarse, &GnssCounters::null_island, &GnssCounters::bad_stamps,
+        &GnssCounters::repeated, &GnssCounters::late, &GnssCounters::far_ahead, &GnssCounters::far_away,
+        &GnssCounters::no_odometry, &GnssCounters::crowded_out}) {
     counters.*member -= before.*member;
   }
   return counters;
@@ -69,6 +87,7 @@ bool GnssFixes::isUsable(const GnssFix& fix) {
   const GeodeticPoint place = std::isnan(fix.place.altitude_m) ? withAltitude(fix.place, 0.0) : fix.place;
   const bool is_antenna = !fix.antenna_m || (fix.antenna_m->cwiseAbs().array() <= 1e3).all();
   if (!isOnEarth(place) || !is_antenna) return drop(counters_.invalid);
+  if (isTooCoarse(fix, 0) || isTooCoarse(fix, 1)) return drop(counters_.too_coarse);
   const bool is_null =
       std::abs(place.latitude_deg) < kNullIsland_deg && std::abs(place.longitude_deg) < kNullIsland_deg;
   if (is_null) return drop(counters_.null_island);
@@ -78,19 +97,16 @@ bool GnssFixes::isUsable(const GnssFix& fix) {
 }
 
 /// What goes into the graph.
-Eigen::Matrix3d GnssFixes::covOf(const GnssFix& fix) {
+Eigen::Matrix3d GnssFixes::covOf(const GnssFix& fix, bool has_altitude) {
   const double default_m2 = config_.default_stddev_m * config_.default_stddev_m;
   const double up_m2 = kUpStddevRatio * kUpStddevRatio * default_m2;
   Eigen::Matrix3d cov_m2 = Eigen::Vector3d(default_m2, default_m2, up_m2).asDiagonal();
-  const bool is_usable =
-      fix.cov_m2 && isCovariance(*fix.cov_m2) && fix.cov_m2->diagonal().maxCoeff() <= kMostStddev_m * kMostStddev_m;
+  if (!has_altitude) forgetAltitude(cov_m2);
+  std::optional<Eigen::Matrix3d> stated_m2 = fix.cov_m2;
+  if (stated_m2 && !has_altitude) forgetAltitude(*stated_m2);
+  const bool is_usable = stated_m2 && isCovariance(*stated_m2);
   counters_.covariances_unknown += is_usable ? 0 : 1;
-  if (is_usable) cov_m2 = symmetric(*fix.cov_m2);
-  if (!std::isfinite(fix.place.altitude_m)) {
-    cov_m2.row(2).setZero();
-    cov_m2.col(2).setZero();
-    cov_m2(2, 2) = kUnknownAltitudeStddev_m * kUnknownAltitudeStddev_m;
-  }
+  if (is_usable) cov_m2 = symmetric(*stated_m2);
   cov_m2.diagonal().array() += config_.least_stddev_m * config_.least_stddev_m;
   return config_.cov_scale * cov_m2;
 }
@@ -106,10 +122,12 @@ void GnssFixes::add(const GnssFix& fix) {
     return;
   }
   const Eigen::Vector3d configured_m(config_.antenna_x_m, config_.antenna_y_m, config_.antenna_z_m);
-  const bool has_altitude = std::isfinite(fix.place.altitude_m);
-  waiting_.insert(
-      place, {fix.stamp, withAltitude(fix.place, 0.0), has_altitude, covOf(fix), fix.antenna_m.value_or(configured_m)});
-  if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+  const bool has_altitude = hasAltitude(fix);
+  const GeodeticPoint at{fix.place.latitude_deg, fix.place.longitude_deg, has_altitude ? fix.place.altitude_m : 0.0};
+  waiting_.insert(place, {fix.stamp, at, has_altitude, covOf(fix, has_altitude), fix.antenna_m.value_or(configured_m)});
+  if (waiting_.size() <= kMostWaiting) return;
+  waiting_.pop_front();
+  ++counters_.crowded_out;
 }
 
 /// The fix that is nearest to a keyframe of those that are nearer to it than to its neighbours; null if there is none.
@@ -132,25 +150,53 @@ const GnssFixes::Fix* GnssFixes::nearestTo(const Map& map, KeyframeId keyframe) 
   return nearest;
 }
 
+GeodeticPoint GnssFixes::Fix::beside(const GeodeticPoint& other) const {
+  return {place.latitude_deg, place.longitude_deg, has_altitude ? place.altitude_m : other.altitude_m};
+}
+
+/// A place that was taken without an altitude gets that of the first fix that knows one.
+void GnssFixes::settleAltitude(GeodeticPoint& place, const Fix& fix) {
+  if (is_altitude_known_ || !fix.has_altitude) return;
+  place.altitude_m = fix.place.altitude_m;
+  is_altitude_known_ = true;
+}
+
+/// Looks at a fix that is far from the origin. True if it ends a row that outvotes the origin, which is then here; the
+/// few positions about the one before stay in the graph as wrong ones. Else the fix is dropped.
+bool GnssFixes::movesOrigin(const Fix& fix) {
+  const bool goes_on = elsewhere_ && toEastNorthUp(*elsewhere_, fix.beside(*elsewhere_)).norm() <= kNextFix_m;
+  elsewhere_row_ = goes_on ? elsewhere_row_ + 1 : 1;
+  elsewhere_ = fix.place;
+  if (elsewhere_row_ < kRowElsewhere || counters_.used >= kRowElsewhere) {
+    ++counters_.far_away;
+    return false;
+  }
+  origin_ = fix.place;
+  is_altitude_known_ = fix.has_altitude;
+  return true;
+}
+
 /// The fix in the tangent plane; empty for one that is nowhere near those before.
 std::optional<Eigen::Vector3d> GnssFixes::confirmed(const Fix& fix) {
   if (!origin_ && unconfirmed_) {
-    const GeodeticPoint before = *unconfirmed_;
-    if (toEastNorthUp(before, fix.place).head<2>().norm() <= kNextFix_m) {
-      origin_ = before;
-      unconfirmed_.reset();
+    settleAltitude(*unconfirmed_, fix);
+    if (toEastNorthUp(*unconfirmed_, fix.beside(*unconfirmed_)).norm() <= kNextFix_m) {
+      origin_ = std::exchange(unconfirmed_, std::nullopt);
     } else {
       ++counters_.far_away;
     }
   }
   if (!origin_) {
     unconfirmed_ = fix.place;
+    is_altitude_known_ = fix.has_altitude;
     return std::nullopt;
   }
-  const Eigen::Vector3d place_m = toEastNorthUp(*origin_, fix.place);
-  if (place_m.norm() <= kFarthestFix_m) return place_m;
-  ++counters_.far_away;
-  return std::nullopt;
+  const bool is_far = toEastNorthUp(*origin_, fix.beside(*origin_)).norm() > kFarthestFix_m;
+  if (is_far && !movesOrigin(fix)) return std::nullopt;
+  elsewhere_.reset();
+  elsewhere_row_ = 0;
+  settleAltitude(*origin_, fix);
+  return toEastNorthUp(*origin_, fix.beside(*origin_));
 }
 
 void GnssFixes::forgetOld(Stamp newest) {

@@ -24,10 +24,10 @@ void transferPlace(StateArchive& archive, std::optional<GeodeticPoint>& place) {
 }  // namespace
 
 void transfer(StateArchive& archive, GnssCounters& counters) {
-  auto& [received, used, covariances_unknown, no_fix, invalid, null_island, bad_stamps, repeated, late, far_ahead,
-         far_away, no_odometry] = counters;
+  auto& [received, used, covariances_unknown, no_fix, invalid, too_coarse, null_island, bad_stamps, repeated, late,
+         far_ahead, far_away, no_odometry, crowded_out] = counters;
   archive(received, used, covariances_unknown, no_fix, invalid, null_island, bad_stamps, repeated, late, far_ahead);
-  archive(far_away, no_odometry);
+  archive(far_away, no_odometry, too_coarse, crowded_out);
 }
 
 void GnssFixes::Fix::transfer(StateArchive& archive) {
@@ -43,6 +43,9 @@ void GnssFixes::transfer(StateArchive& archive, const Map& map) {
   archive(counters_, waiting_, first_, next_, looked_until_);
   transferPlace(archive, unconfirmed_);
   transferPlace(archive, origin_);
+  archive(is_altitude_known_);
+  transferPlace(archive, elsewhere_);
+  archive(elsewhere_row_);
   archive.require(counters_.received > 0, "fixes without any");
   archive.require(areRising(waiting_, [](const Fix& fix) { return fix.stamp; }), "fixes whose stamps do not rise");
   archive.require(first_ <= next_ && next_ <= map.keyframes().nextId(), "fixes of keyframes that there are not");

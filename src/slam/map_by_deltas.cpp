@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -33,9 +34,17 @@ class Rebuilding {
     std::vector<Keyframe> keyframes;
     for (const DeltaKeyframe& seen : delta.keyframes) keyframes.push_back(keyframeOf(seen, id));
     Submap submap = submapOf(delta, keyframes);
-    for (std::size_t k = 0; k < keyframes.size(); ++k) show(delta.keyframes[k].landmarks, delta, keyframes[k], submap);
+    std::set<LandmarkId> second_names;
+    for (const SameLandmark& pair : delta.duplicates) second_names.insert(pair.first);
+    for (std::size_t k = 0; k < keyframes.size(); ++k) {
+      show(delta.keyframes[k].landmarks, second_names, keyframes[k], submap);
+    }
     if (delta.begins_session) parts_.sessions.begin(parts_.map.keyframes().nextId());
-    for (const Keyframe& keyframe : keyframes) parts_.sessions.add(StampedPose{keyframe.stamp, keyframe.T_odom_base});
+    for (const Keyframe& keyframe : keyframes) {
+      const std::optional<StampedPose> newest = parts_.sessions.latestOdometry();
+      if (newest && keyframe.stamp <= newest->stamp) continue;  // maps of bare landmarks have no time
+      parts_.sessions.add(StampedPose{keyframe.stamp, keyframe.T_odom_base});
+    }
     const auto ids = parts_.map.add(std::make_shared<const Submap>(std::move(submap)), std::move(keyframes));
     try {
       parts_.graph.add(parts_.map, ids, sightingsOf(delta), odometry);
@@ -118,7 +127,7 @@ class Rebuilding {
   }
 
   /// What a keyframe shows is not one object, but for names that are known to be one.
-  void show(const std::vector<std::size_t>& landmarks, const MapDelta& delta, Keyframe& keyframe,
+  void show(const std::vector<std::size_t>& landmarks, const std::set<LandmarkId>& second_names, Keyframe& keyframe,
             Submap& submap) const {
     const Pose T_keyframe_submap = keyframe.T_odom_base.inverse() * submap.T_odom_submap;
     int row = 0;
@@ -130,9 +139,7 @@ class Rebuilding {
       next = place + 1;
       const MixtureLandmark& landmark = submap.landmarks[place];
       keyframe.scene.objects.push_back(sceneObject(landmark, T_keyframe_submap, floor_m_));
-      const bool is_second = std::any_of(delta.duplicates.begin(), delta.duplicates.end(),
-                                         [&](const SameLandmark& pair) { return pair.first == landmark.id; });
-      if (!is_second) submap.associations.push_back({keyframe.frame, row++, landmark.id});
+      if (second_names.count(landmark.id) == 0) submap.associations.push_back({keyframe.frame, row++, landmark.id});
     }
   }
 

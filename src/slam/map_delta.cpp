@@ -25,6 +25,7 @@ std::map<LandmarkId, std::vector<SeenAt>> seenIn(const SubmapContent& content) {
   std::map<LandmarkId, std::vector<SeenAt>> seen;
   for (std::size_t k = 0; k < content.keyframes.size(); ++k) {
     for (const SceneObject& object : content.keyframes[k].scene.objects) {
+      if (findLandmark(object.landmark, content.submap->landmarks) == nullptr) continue;  // a file may say so
       std::vector<SeenAt>& one = seen[object.landmark];  // a scene shows one place of the submap, however often
       const SeenAt at{k, {object.position_m, object.cov_m2}};
       if (one.empty() || at.position.mean_m.norm() < one.front().position.mean_m.norm()) one = {at};
@@ -109,7 +110,8 @@ SubmapContent contentOf(const SlamParts& parts, SubmapId submap) {
   }
   const KeyframeId first = parts.map.keyframesOf(submap).front();
   content.T_before_first = rawStep(parts.map, first);
-  content.begins_session = parts.graph.beginsSession(first);
+  content.begins_session =
+      first != KeyframeId(0) && (parts.graph.beginsSession(first) || parts.sessions.beginsAt(first));
   content.odometry = parts.odometry;
   if (parts.mapper) content.odometry.systematic.scale_translation.stddev = parts.mapper->scaleStddev();
   for (const LoopClosureRecord& closure : parts.map.closures()) {
@@ -137,7 +139,9 @@ MapDelta deltaOf(const SubmapContent& content) {
   for (const Keyframe& keyframe : content.keyframes) {
     delta.keyframes.push_back({keyframe.stamp, motionTo(keyframe), {}, {}});
     for (const SceneObject& object : keyframe.scene.objects) {
-      delta.keyframes.back().landmarks.push_back(std::distance(seen.begin(), seen.find(object.landmark)));
+      const auto known = seen.find(object.landmark);
+      if (known == seen.end()) continue;
+      delta.keyframes.back().landmarks.push_back(std::distance(seen.begin(), known));
     }
     std::sort(delta.keyframes.back().landmarks.begin(), delta.keyframes.back().landmarks.end());
   }
@@ -147,7 +151,6 @@ MapDelta deltaOf(const SubmapContent& content) {
   for (std::size_t i = 0; i < steps.size(); ++i) delta.keyframes[i + 1].T_previous_keyframe = steps[i];
   for (const auto& [id, sightings] : seen) {
     const MixtureLandmark* landmark = findLandmark(id, content.submap->landmarks);
-    if (landmark == nullptr) throw std::logic_error("deltaOf: a scene shows a landmark that its submap lacks");
     const ClassIndex class_index = landmark->mostLikelyClass();
     const SeenAt best = fused(sightings, delta.keyframes);
     delta.landmarks.push_back({id, class_index, landmark->class_probs(class_index), landmark->existence_prob,

@@ -74,7 +74,8 @@ PoseNode MapGraph::nodeOf(const Map& map, KeyframeId id, const std::vector<Sight
 }
 
 bool MapGraph::beginsSession(KeyframeId keyframe) const {
-  return keyframe != KeyframeId(0) && node(keyframe).odometry_cov == poseCov(kSessionStddev_m, kSessionStddev_rad);
+  const PoseCov found = poseCov(kSessionStddev_m, kSessionStddev_rad);
+  return keyframe != KeyframeId(0) && node(keyframe).odometry_cov.isApprox(found, 1e-9);
 }
 
 void MapGraph::add(const std::vector<OuterPosition>& positions) {

@@ -67,6 +67,11 @@ std::optional<Pose> Sessions::odometryAt(Stamp stamp, double max_gap_s) const {
   return interpolate(before.T_world_base, after->T_world_base, fraction);
 }
 
+bool Sessions::beginsAt(KeyframeId keyframe) const {
+  return std::any_of(sessions_.begin(), sessions_.end(),
+                     [&](const Session& session) { return session.first_keyframe == keyframe; });
+}
+
 bool Sessions::isNewestFix(const Map& map, KeyframeId keyframe) const {
   const MapFix* fix = latestFix();
   return keyframe >= sessions_.back().first_keyframe &&

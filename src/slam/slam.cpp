@@ -166,6 +166,13 @@ void Slam::follow(const Frame& frame) {
   }
 }
 
+bool Slam::addFix(const GnssFix& fix) {
+  const auto* localizing = std::get_if<Localizing>(&parts_.mode);
+  if (localizing != nullptr && !localizing->until_found) return false;
+  parts_.fixes.add(fix);
+  return true;
+}
+
 void Slam::endSubmap() {
   if (!parts_.is_fitted && !parts_.waiting.empty()) fitToDetector();
   if (!parts_.mapper || !parts_.mapper->isOpen()) return;

@@ -137,6 +137,9 @@ TEST_F(ReadableMapTest, WithoutMessagesTheVersionIsRefused) {
 TEST_F(ReadableMapTest, HostileMessagesAreRefused) {
   const std::string missing = withUpdates([](MapUpdate& update) { return update.number != 3; });
   expectInputError([&] { read(missing); }, {missing, "another version", "field 'number'"});
+  const std::uint32_t newest = static_cast<std::uint32_t>(slam_.map().submaps().size() - 1);
+  const std::string cut = withUpdates([&](MapUpdate& update) { return update.number != newest; });
+  expectInputError([&] { read(cut); }, {cut, "field 'closures_held'"});
   const std::string bad = withUpdates([](MapUpdate& update) { return update.driven = -1.0, true; });
   expectInputError([&] { read(bad); }, {bad, "field 'driven'"});
   const std::string crossed = withUpdates([](MapUpdate& update) {

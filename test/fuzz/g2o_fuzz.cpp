@@ -23,7 +23,7 @@ FuzzTarget g2oTarget() {
            "2\n# planar\nVERTEX_SE2 0 0 0 0\nFIX 0\nVERTEX_XY 5 2 0\nEDGE_SE2 0 1 1 0 0 2 1 0 2 0 1\n"
            "EDGE_SE2_XY 1 5 1 0 1 0 1\n",
            "PARAMS_SE3OFFSET 0 0 0 0 0 0 0 1\nVERTEX_TRACKXYZ 9 1 2 3\nEDGE_SE3_TRACKXYZ 3 9 0 1 2 3 1 0 0 1 0 1\n"
-           "EDGE_SE3:QUAT 3 4 1 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 -1\nFIX 3 4\n"},
+           "EDGE_SE3:QUAT 3 4 1 0 0 0 0 0 1 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\nFIX 3 4\n"},
           mutatedText};
 }
 

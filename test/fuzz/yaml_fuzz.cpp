@@ -28,7 +28,7 @@ FuzzTarget yamlTarget() {
       run,
       {"max_hypotheses: 20\nseed: 3\n", "classes:\n  - {id: 1, name: pole}\n  - {id: 2, name: trunk, static: true}\n",
        "class_table: t.yaml\nlabels: {1: pole, 2: trunk}\nmoving: {3: trunk}\nignored: [0, 7]\n",
-       readFile(SMHT_SOURCE_DIR "/config/classes_semantic_kitti.yaml"), readFile(SMHT_SOURCE_DIR "/config/paper.yaml")},
+       readFile(SMHT_SOURCE_DIR "/config/classes_semantic_kitti.yaml")},
       mutatedText};
 }
 

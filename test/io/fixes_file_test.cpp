@@ -59,6 +59,7 @@ TEST_F(FixesFileTest, ErrorsNameFileLineAndColumn) {
   expectRefused("time,latitude\n1,2\n", {path_, "longitude"});
   expectRefused("time,latitude,longitude\n1,47,8\nx,47,8\n", {path_ + ":3", "'time'"});
   expectRefused("time,latitude,longitude\n1e300,47,8\n", {path_ + ":2", "'time'", "no time"});
+  expectRefused("time,latitude,longitude\n9.5e9,47,8\n", {path_ + ":2", "'time'", "no time"});
   expectRefused("time,latitude,longitude\n1,47\n", {path_ + ":2"});
   expectRefused("time,latitude,longitude\n1,47,\n", {path_ + ":2", "'longitude'"});
   const std::string header = "time,latitude,longitude,stddev_east,stddev_north,stddev_up\n";

@@ -87,6 +87,45 @@ TEST_F(MapDeltaTest, AMapByDeltasIsJoinedLikeTheMap) {
   EXPECT_NEAR(of_deltas, of_state, 0.02 * of_state);
 }
 
+void expectSamePlaces(const Map& a, const Map& b, double most_m) {
+  ASSERT_EQ(a.keyframes().size(), b.keyframes().size());
+  for (const KeyframeId k : a.keyframes().ids()) {
+    const Eigen::Vector3d apart_m = a.T_map_keyframe(k).translation_m - b.T_map_keyframe(k).translation_m;
+    EXPECT_LT(apart_m.norm(), most_m) << k.index();
+  }
+}
+
+TEST_F(MapDeltaTest, AnotherSessionBeginsWhereItWasFound) {
+  slam_.beginSession();
+  const SquareDrive square(3);
+  const Pose elsewhere{expRotation({0.0, 0.0, 2.0}), {300.0, -200.0, 0.0}};
+  for (int i = 700; i < 1000; ++i) {
+    slam_.addOdometry({SquareDrive::stampAt(i), elsewhere * SquareDrive::odometryAt(i)});
+    slam_.addDetections(SquareDrive::stampAt(i) - 30000000, square.detectionsAt(i));
+  }
+  slam_.finish();
+  const MapByDeltas map = deltasOf(slam_.parts());
+  EXPECT_EQ(std::count_if(map.deltas.begin(), map.deltas.end(), [](const MapDelta& one) { return one.begins_session; }),
+            1);
+  expectSamePlaces(makeMap(map, kConfig, classes_).map, slam_.map(), 0.5);
+}
+
+TEST_F(MapDeltaTest, AJoinedMapOfDrivesAtOneTimeIsMadeAgain) {
+  Slam other(kConfig, classes_);
+  const SquareDrive square(3);
+  for (int i = 700; i < 1100; ++i) {
+    other.addOdometry({SquareDrive::stampAt(i - 700), SquareDrive::odometryAt(i)});
+    other.addDetections(SquareDrive::stampAt(i - 700) - 30000000, square.detectionsAt(i));
+  }
+  other.finish();
+  std::vector<MergeMap> maps{MergeMap("map", slam_), MergeMap("other", other)};
+  const MergeResult result = mergeMaps(maps, kConfig, classes_);
+  const SlamParts& joined = result.groups[0].joined->parts;
+  ASSERT_EQ(joined.map.keyframes().size(), slam_.map().keyframes().size() + other.map().keyframes().size());
+  const Slam again(kConfig, classes_, makeState(deltasOf(joined), kConfig, classes_));
+  expectSamePlaces(again.map(), joined.map, 1.0);
+}
+
 TEST_F(MapDeltaTest, DeltasThatContradictThemselvesAreRefused) {
   const MapByDeltas good = deltasOf(slam_.parts());
   const auto expectRefused = [&](const std::function<void(MapByDeltas&)>& change) {

@@ -52,17 +52,19 @@ TEST(InputQueueTest, FullQueueDropsObjectsBeforeOdometry) {
   for (const std::uint32_t i : {0U, 2U, 4U, 5U}) EXPECT_EQ(sequenceOf(*queue.pop()), i);
 }
 
-TEST(InputQueueTest, FullQueueDropsFixesAfterObjectsAndBeforeOdometry) {
+TEST(InputQueueTest, FullQueueDropsFixesBeforeObjectsAndOdometry) {
   InputQueue queue(4, kForever);
-  queue.push(odometryWithSequence(0));
+  queue.push(objectsWithSequence(0));
   queue.push(fixWithSequence(1));
-  queue.push(objectsWithSequence(2));
+  queue.push(odometryWithSequence(2));
   queue.push(fixWithSequence(3));
-  for (std::uint32_t i = 4; i < 7; ++i) queue.push(odometryWithSequence(i));
-  EXPECT_EQ(queue.droppedObjects(), 1U);
+  for (std::uint32_t i = 4; i < 6; ++i) queue.push(odometryWithSequence(i));
   EXPECT_EQ(queue.droppedFixes(), 2U);
+  EXPECT_EQ(queue.droppedObjects(), 0U);
+  queue.push(odometryWithSequence(6));
+  EXPECT_EQ(queue.droppedObjects(), 1U);
   EXPECT_EQ(queue.droppedOdometry(), 0U);
-  for (const std::uint32_t i : {0U, 4U, 5U, 6U}) EXPECT_EQ(sequenceOf(*queue.pop()), i);
+  for (const std::uint32_t i : {2U, 4U, 5U, 6U}) EXPECT_EQ(sequenceOf(*queue.pop()), i);
 }
 
 TEST(InputQueueTest, ObjectsThatWaitedForTooLongAreDroppedAndOdometryIsNot) {

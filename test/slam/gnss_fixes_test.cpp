@@ -200,6 +200,7 @@ TEST_F(GnssFixesTest, WhereNoKeyframesComeTheNewestFixesAreKept) {
   const std::size_t full = sizeAfter(1000, 7000);
   EXPECT_LT(sizeAfter(7000, 9000), full + 1000U);
   EXPECT_LT(full, 7U * few);
+  EXPECT_EQ(fixes.counters().crowded_out, 3000U);
 }
 
 TEST_F(GnssFixesTest, WithoutCovarianceAndAltitudeTheDefaultsHold) {

@@ -25,6 +25,7 @@ struct RefusedInput {
   std::size_t objects_before_jump = 0;
   std::map<int, std::size_t> unknown_classes;  ///< class id -> objects dropped
   std::size_t fixes_bad_stamps = 0;
+  std::size_t fixes_without_mapping = 0;    ///< while one localizes, or before odometry that may begin a session
   std::size_t fixes_without_transform = 0;  ///< taken with the antenna where the parameters have it
   std::string antenna_frame;                ///< the newest one of these
 };

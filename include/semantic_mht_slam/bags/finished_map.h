@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,9 +11,11 @@
 namespace semantic_mht_slam {
 
 /// A map file as others are merged with it: what was still open when it was saved is ended. `slam_config`: with paths
-/// that can be opened. Throws InputError as `readMapFile` does.
+/// that can be opened; `tell` is called if it is made of what another version of the program wrote. Throws InputError
+/// as `readMapFile` does.
 std::unique_ptr<Slam> readFinishedMap(const std::string& path, const SystemConfig& config,
                                       const SlamConfig& slam_config, const ClassTable& classes,
-                                      const KeepReading& keep_reading);
+                                      const KeepReading& keep_reading,
+                                      const std::function<void(const std::string& remark)>& tell);
 
 }  // namespace semantic_mht_slam

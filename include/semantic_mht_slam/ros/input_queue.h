@@ -22,7 +22,7 @@ using InputMessage =
     std::variant<nav_msgs::OdometryConstPtr, SemanticObjectArrayConstPtr, sensor_msgs::NavSatFixConstPtr>;
 
 /// Bounded queue between the subscribers and the worker. What is too much for the worker is dropped and counted:
-/// objects that have waited for too long, and when the queue is full the oldest objects, else the oldest fix, or the
+/// objects that have waited for too long, and when the queue is full the oldest fix, else the oldest objects, or the
 /// oldest odometry if neither waits.
 class InputQueue {
  public:

@@ -38,6 +38,7 @@ struct GnssCounters {
   std::size_t covariances_unknown = 0;  ///< the default deviation was taken
   std::size_t no_fix = 0;               ///< dropped: the receiver says so
   std::size_t invalid = 0;              ///< dropped: not finite, or out of range
+  std::size_t too_coarse = 0;           ///< dropped: the horizontal standard deviation says nothing
   std::size_t null_island = 0;          ///< dropped: latitude and longitude are both zero
   std::size_t bad_stamps = 0;           ///< dropped: no time that ROS can write
   std::size_t repeated = 0;             ///< dropped: there is another one of that stamp
@@ -45,6 +46,7 @@ struct GnssCounters {
   std::size_t far_ahead = 0;            ///< dropped: the stamp is far ahead of the keyframes
   std::size_t far_away = 0;             ///< dropped: nowhere near the fixes before
   std::size_t no_odometry = 0;          ///< dropped: in a gap of the odometry
+  std::size_t crowded_out = 0;          ///< dropped: the oldest of too many that waited for keyframes
 };
 
 /// What was counted since `before`.
@@ -69,7 +71,8 @@ class GnssFixes {
   /// The positions of keyframes that have not been looked at, as far as they are older by `max_delay_s` than the newest
   /// one, or all of them. A keyframe gets the fix that is nearest in time, within `max_gap_s`, if no other keyframe is
   /// nearer to that; the odometry between the two says where in the keyframe the antenna was. The frame is east, north,
-  /// up about the origin, which is the first fix that the next one confirms.
+  /// up about the origin, which is the first fix that the next one confirms. While there are too few positions to place
+  /// the map, a longer row of fixes far from there, which confirm each other, moves the origin to them.
   std::vector<OuterPosition> take(const Map& map, const Sessions& sessions, bool all);
 
   /// Another odometry begins, with other stamps.
@@ -89,13 +92,18 @@ class GnssFixes {
     Eigen::Matrix3d cov_m2 = Eigen::Matrix3d::Identity();  ///< as it goes into the graph
     Eigen::Vector3d antenna_m = Eigen::Vector3d::Zero();
 
+    /// At the altitude of `other` if its own is not known.
+    GeodeticPoint beside(const GeodeticPoint& other) const;
+
     void transfer(StateArchive& archive);
   };
 
   bool isUsable(const GnssFix& fix);
-  Eigen::Matrix3d covOf(const GnssFix& fix);
+  Eigen::Matrix3d covOf(const GnssFix& fix, bool has_altitude);
   const Fix* nearestTo(const Map& map, KeyframeId keyframe) const;
   std::optional<Eigen::Vector3d> confirmed(const Fix& fix);
+  bool movesOrigin(const Fix& fix);
+  void settleAltitude(GeodeticPoint& place, const Fix& fix);
   void forgetOld(Stamp newest);
 
   GnssConfig config_;
@@ -105,6 +113,9 @@ class GnssFixes {
   std::optional<Stamp> looked_until_;
   std::optional<GeodeticPoint> unconfirmed_;  ///< that may become the origin
   std::optional<GeodeticPoint> origin_;
+  bool is_altitude_known_ = false;          ///< of the origin, or of what may become it
+  std::optional<GeodeticPoint> elsewhere_;  ///< the newest fix, if it was far from the origin
+  std::size_t elsewhere_row_ = 0;           ///< such fixes in a row that confirmed each other
   GnssCounters counters_;
 };
 

@@ -31,6 +31,9 @@ class Sessions {
   /// Another odometry begins; `next` is the keyframe that the map gets next.
   void begin(KeyframeId next);
 
+  /// Whether a session begins with a keyframe, or before it since the one before.
+  bool beginsAt(KeyframeId keyframe) const;
+
   /// A pose found by localization.
   void add(const MapFix& fix) { sessions_.back().fixes.push_back(fix); }
 

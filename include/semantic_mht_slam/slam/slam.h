@@ -132,8 +132,9 @@ class Slam {
   /// What the detector saw at `stamp`, in the base frame. Bad ones are dropped and counted.
   void addDetections(Stamp stamp, Detections detections);
 
-  /// A position by satellites. Bad ones are dropped and counted (see `GnssFixes`).
-  void addFix(const GnssFix& fix) { parts_.fixes.add(fix); }
+  /// A position by satellites. Bad ones are dropped and counted (see `GnssFixes`). False if localization was chosen:
+  /// then it is ignored, as the map stays as it is.
+  bool addFix(const GnssFix& fix);
 
   /// Ends the current submap, so that what it saw is in the map, and solves the whole pose graph.
   void finish();
