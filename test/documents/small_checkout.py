@@ -27,6 +27,8 @@ TEST(DoubledTest, isTwice) { EXPECT_EQ(semantic_mht_slam::doubled(2), 4); }
 """
 FUZZER = """#include "fuzz/fuzz_target.h"
 namespace semantic_mht_slam {
+Rng::Rng(std::uint64_t seed) : seed_(seed) {}
+double Rng::uniform() { return 0.0; }
 int doubled(int value);
 FuzzTarget trajectoryTarget() {
   return {"trajectory", [](const std::string& bytes) { return doubled(static_cast<int>(bytes.size())) > 0; }, {"seed"}};
@@ -37,7 +39,7 @@ FuzzTarget trajectoryTarget() {
 
 def make_small_checkout(folder):
     """Makes it in the folder, which is not there yet."""
-    for name in ("scripts", "src", "include", "test", "package.xml"):
+    for name in ("cmake", "scripts", "src", "include", "test", "package.xml"):
         copy = shutil.copytree if (REPOSITORY / name).is_dir() else shutil.copy
         folder.mkdir(exist_ok=True)
         copy(REPOSITORY / name, folder / name)
